@@ -8,7 +8,8 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
-#include "engine/gathering/gather_part.h"
+#include "engine/gathering/gather_pass.h"
+#include "engine/gathering/gather_rows.h"
 #include "engine/image/display_pass.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/accumulate_pass.h"
@@ -91,6 +92,7 @@ struct CubeDrawing::State {
   Frame frameOfGroup(const Camera& camera, const LightGroups& groups, std::size_t group, const Progress& progress);
   void begin(const Camera& camera, const FrameSettings& wanted, const Progress& progress);
   FixedSums emptySums(const Frame& frame, const FrameSettings& wanted);
+  std::uint64_t mostBricks();
   std::uint64_t leastBytes(const Camera& camera, const FrameSettings& wanted);
   Error withNeed(const Error& error, const Camera& camera, const FrameSettings& wanted);
   void march(const Frame& frame);
@@ -140,7 +142,8 @@ shader::GatherFrame CubeDrawing::State::latticeOf(const Camera& camera, const Fr
 
 /// The frame of a level whose blocks take the place of voxels.
 shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level) const {
-  shader::GatherFrame result = makeGatherFrame(cubeLevel.onDevice, frame.camera, frame.settings, {}, double(frame.lattice.endTransmittance));
+  shader::GatherFrame result =
+      makeGatherFrame(cubeLevel.onDevice, frame.camera, frame.settings, {}, double(frame.lattice.endTransmittance));
   result.samples = frame.lattice.samples;
   result.firstSample = frame.lattice.firstSample;
   result.pitch = frame.lattice.pitch;
@@ -166,25 +169,6 @@ bool isRead(const shader::GatherFrame& frame, const VoxelRange& cube) {
   return false;
 }
 
-/// Adds samples of some rows of the whole lattice; only the light of them where they have been added with other lights.
-void addSamples(FixedSums& sums, const std::vector<GatherSums>& samples, glm::ivec2 rows, bool isFirst) {
-  const auto add = [&](SumChannel channel, std::size_t i, double value) {
-    const auto c = std::size_t(channel);
-    sums.values[c * sums.pixelCount() + i] += std::llround(std::ldexp(value, sums.digits[c]));
-  };
-  for (int y = rows.x; y < rows.y; ++y)
-    for (int x = 0; x < sums.extent.x; ++x) {
-      const glm::ivec2 place = {sums.first.x + x, y};
-      const GatherSums& sample = samples[std::size_t(place.x) + std::size_t(sums.lattice->samples.x) * std::size_t(place.y)];
-      const std::size_t i = std::size_t(x) + std::size_t(sums.extent.x) * std::size_t(y - sums.first.y);
-      for (int c = 0; c < 3; ++c) add(SumChannel(c), i, sample.color[c]);
-      if (!isFirst) continue;
-      add(SumChannel::Energy, i, sample.energy);
-      add(SumChannel::OpticalDepth, i, std::min(-std::log1p(-std::min(sample.energy, 1.0)), double(shader::kMaxBrickDepth)));
-      add(SumChannel::Distance, i, sample.distance);
-    }
-}
-
 /// The part of a rectangle in some rows.
 SampleRectangle inRows(const SampleRectangle& rectangle, glm::ivec2 rows) {
   SampleRectangle result = rectangle;
@@ -202,7 +186,8 @@ std::vector<std::uint16_t> codesOf(const SweptLight& light, const GatherVolume& 
     for (brick.y = 0; brick.y < size.y; ++brick.y)
       for (brick.x = 0; brick.x < size.x; ++brick.x, ++cell)
         if (const std::uint32_t number = inBox.cells().numbers[cell]; number != 0)
-          light.read(firstBrick + brick, std::span(codes).subspan(std::size_t(number) * shader::kGatherBrickBlocks, shader::kGatherBrickBlocks));
+          light.read(firstBrick + brick,
+                     std::span(codes).subspan(std::size_t(number) * shader::kGatherBrickBlocks, shader::kGatherBrickBlocks));
   return codes;
 }
 
@@ -243,7 +228,7 @@ void CubeDrawing::State::drawLevel(const Frame& frame, int level, std::span<cons
 }
 
 void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& whole, const Cube& cube,
-                                       bool isLast) {
+                                  bool isLast) {
   const VoxelRange box = withHalo(cube.voxels, cubeLevel.outline().dimensions);
   Volume volume;
   {
@@ -271,24 +256,21 @@ void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel
   shader::GatherFrame gatherFrame = whole;
   inBox.describe(gatherFrame);  // what record() has made too
   gatherFrame.levels[0].dimensions = cubeLevel.outline().dimensions;
-  gatherFrame.region = {.first = box.first,
-                        .begin = cube.voxels.first,
-                        .end = cube.voxels.end,
-                        .corner = cube.seen.first,
-                        .extent = cube.seen.extent};
+  gatherFrame.cube = {
+      .first = box.first, .begin = cube.voxels.first, .end = cube.voxels.end, .corner = cube.seen.first, .extent = cube.seen.extent};
   const auto march = [&](Commands& recording) {
-    gather->recordRegion(recording, inBox, gatherFrame);
+    gather->recordCube(recording, inBox, gatherFrame);
     recording.submitAndWait(frame.progress);
     addTimes(times, recording.times());
   };
   march(commands);
   if (!isLast) return;
   // Completes the sums of all samples, with a cube that holds nothing.
-  gatherFrame.region.end = gatherFrame.region.begin;
+  gatherFrame.cube.end = gatherFrame.cube.begin;
   const SampleRectangle own = inRows({.first = gatherFrame.firstSeen, .extent = gatherFrame.seenExtent}, frame.rows);
-  gatherFrame.region.corner = own.first;
-  gatherFrame.region.extent = own.extent;
-  gatherFrame.region.isLast = 1;
+  gatherFrame.cube.corner = own.first;
+  gatherFrame.cube.extent = own.extent;
+  gatherFrame.cube.isLast = 1;
   Commands completing(device);
   march(completing);
 }
@@ -303,11 +285,27 @@ void CubeDrawing::State::resolve(const Frame& frame, const FrameTargets& targets
 /// The sums of no sample, in the form in which samples are added.
 FixedSums CubeDrawing::State::emptySums(const Frame& frame, const FrameSettings& wanted) {
   const DeviceVolume& volume = levelAt(0).onDevice;
-  FixedSums sums = partSums(frame.lattice, classification.isPost(levelAt(0).outline()),
-                            sumsLayout(volume, makeFrameConstants(device, volume, table, frame.camera, frame.settings), wanted));
+  FixedSums sums = sumsOfSamples(frame.lattice, classification.isPost(levelAt(0).outline()),
+                                 sumsLayout(volume, makeFrameConstants(device, volume, table, frame.camera, frame.settings), wanted));
   sums.method += ", cube by cube";
-  sums.values.assign(sums.pixelCount() * kSumChannels, 0);
   return sums;
+}
+
+/// The most bricks with data that a cube is read with.
+std::uint64_t CubeDrawing::State::mostBricks() {
+  const CubeLevel& base = levelAt(0);
+  const Cells bricks = source->bricks();
+  std::uint64_t most = 0;
+  for (const glm::ivec3 cube : base.cubes) {
+    const VoxelRange box = withHalo(cubeVoxels(cube, base.outline().dimensions), base.outline().dimensions);
+    const glm::ivec3 first = box.first / kBrick, end = (box.end + kBrick - 1) / kBrick;
+    std::uint64_t count = 0;
+    for (glm::ivec3 brick = first; brick.z < end.z; ++brick.z)
+      for (brick.y = first.y; brick.y < end.y; ++brick.y)
+        for (brick.x = first.x; brick.x < end.x; ++brick.x) count += bricks.at(brick);
+    most = std::max(most, count);
+  }
+  return most;
 }
 
 /// Bytes of device memory that a frame takes, rounded up: its images and sums, and a cube or the sweep of a light.
@@ -318,13 +316,13 @@ std::uint64_t CubeDrawing::State::leastBytes(const Camera& camera, const FrameSe
   const shader::GatherFrame lattice = latticeOf(camera, settings);
   std::uint64_t axes = 0;
   for (int axis = 0; axis < 3; ++axis) axes += someRayHasAxis(lattice, axis) ? 1 : 0;
-  const glm::u64vec3 bricks((glm::min(outline.dimensions, kEdge + 2 * kHalo) + kBrick - 1) / kBrick);
-  const std::uint64_t voxels = (bricks.x * bricks.y * bricks.z + 1) * std::uint64_t(kBrick * kBrick * kBrick);
+  const std::uint64_t voxels = (mostBricks() + 1) * std::uint64_t(kBrick * kBrick * kBrick);
   const std::uint64_t slots = settings.lighting ? settings.lighting->lights.size() + (settings.lighting->hasAmbient() ? 3 : 0) : 0;
   // Of a voxel: what is built of it, and its quads, of which those of light and emission are for all axes along which rays march.
-  const std::uint64_t built = 32, quads = sizeof(glm::uvec2) * (1 + slots) + (classification.emission ? 2 * sizeof(glm::uvec4) : 0);
+  const std::uint64_t built = 24, quads = sizeof(glm::uvec2) * (1 + slots) + (classification.emission ? 2 * sizeof(glm::uvec4) : 0);
   std::uint64_t largest = voxels * (built + slots * sizeof(std::uint16_t) + axes * quads);
-  for (const Light& light : groups.all) largest = std::max(largest, SweptLight::leastBytes(outline.dimensions, lightSource(light, outline.indexToWorld)));
+  for (const Light& light : groups.all)
+    largest = std::max(largest, SweptLight::leastBytes(outline.dimensions, lightSource(light, outline.indexToWorld)));
   constexpr std::uint64_t kSums = 3, kSumBytes = sizeof(glm::vec4) + sizeof(float);
   const std::uint64_t sums = kSums * kSumBytes * std::uint64_t(lattice.samples.x) * std::uint64_t(lattice.samples.y);
   const std::uint64_t bytes = 2 * targetBytes(wanted) + sums + largest;
@@ -337,11 +335,12 @@ Error CubeDrawing::State::withNeed(const Error& error, const Camera& camera, con
   const std::uint64_t bytes = leastBytes(camera, wanted);
   if (bytes <= device.memoryBytes()) return error;
   const glm::ivec3 box = source->outline().dimensions;
-  return Error(ErrorKind::OutOfMemory,
-               fmt::format("a volume of {}x{}x{} voxels and an image of {}x{} pixels need at least {} MiB of device memory, piece by piece, and "
-                           "{} is {} MiB: raise that, or draw a smaller image",
-                           box.x, box.y, box.z, wanted.size.x, wanted.size.y, (bytes + 0xfffff) >> 20, Parameter("memory-limit"),
-                           device.memoryBytes() >> 20));
+  return Error(
+      ErrorKind::OutOfMemory,
+      fmt::format("a volume of {}x{}x{} voxels and an image of {}x{} pixels need at least {} MiB of device memory, piece by piece, and "
+                  "{} is {} MiB: raise that, or draw a smaller image",
+                  box.x, box.y, box.z, wanted.size.x, wanted.size.y, (bytes + 0xfffff) >> 20, Parameter("memory-limit"),
+                  device.memoryBytes() >> 20));
 }
 
 /// Marches the rows of the frame, whose sums are then in `gather`.
@@ -467,12 +466,12 @@ FixedSums CubeDrawing::drawShares(const Camera& camera, const FrameSettings& wan
   FixedSums sums;
   for (std::size_t group = 0; group < groups.settings.size(); ++group) {
     State::Frame frame = state.frameOfGroup(camera, groups, group, progress);
-    const int first = frame.lattice.firstSeen.y, rows = frame.lattice.seenExtent.y;
-    frame.rows = first + glm::ivec2(rows * part.index / part.count, rows * (part.index + 1) / part.count);
-    state.march(frame);
+    frame.rows = rowsOfPart(frame.lattice, part);
     if (group == 0) sums = state.emptySums(frame, wanted);
+    if (frame.rows.x == frame.rows.y) continue;
+    state.march(frame);
     const StageTimer timer(state.times, "copy to host");
-    addSamples(sums, state.gather->downloadGathered(), frame.rows, group == 0);
+    addSamples(sums, state.gather->downloadGathered(), frame.rows, group > 0);
   }
   return sums;
 } catch (const Error& error) {

@@ -1,9 +1,9 @@
 #pragma once
-// Draws a volume that does not fit into the device's memory by gathering: Subr et al. 2007, Section 5. Cubes of the volume are read from its
-// source one after the other, in the order in which rays meet them, and each ray continues in the next cube with the sums and the
+// Draws a volume that does not fit into the device's memory by gathering: Subr et al. 2007, Section 5. Cubes of the volume are read from
+// its source one after the other, in the order in which rays meet them, and each ray continues in the next cube with the sums and the
 // transmittance that the cubes in front of it left. Positions on rays are those in the whole volume, so that the image is the one that is
-// gathered with all voxels in memory, up to rounding and to the samples that are interpolated there, and has the same bits with every memory
-// limit. Only renderer.cpp includes this.
+// gathered with all voxels in memory, up to rounding and to the samples that are interpolated there, and has the same bits with every
+// memory limit. Only renderer.cpp includes this.
 
 #include <memory>
 #include <optional>
@@ -31,7 +31,8 @@ class CubeDrawing {
   static std::optional<std::string> whyNot(glm::ivec3 dimensions, const FrameSettings& settings);
 
   /// Frames must be such that whyNot() has no reason.
-  CubeDrawing(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification, const TableSettings& table);
+  CubeDrawing(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
+              const TableSettings& table);
   ~CubeDrawing();
 
   /// The image of a frame, which is complete. Light that reaches voxels is kept for further frames. Fails with ErrorKind::OutOfMemory where

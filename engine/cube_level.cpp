@@ -10,7 +10,8 @@
 namespace freevoxels {
 
 CubeLevel::CubeLevel(std::shared_ptr<const VolumeSource> from, int level, const Classification& classification)
-    : source{.source = std::move(from), .level = level, .classification = classification}, onDevice(outlineOnDevice(outline(), classification)) {
+    : source{.source = std::move(from), .level = level, .classification = classification},
+      onDevice(outlineOnDevice(outline(), classification)) {
   constexpr int kBricks = kCubeEdge / ScalarBricks::kEdge;
   const Cells around = bricksAround(source);
   Cells met((outline().dimensions + kCubeEdge - 1) / kCubeEdge);
@@ -25,7 +26,7 @@ CubeLevel::CubeLevel(std::shared_ptr<const VolumeSource> from, int level, const 
 }
 
 void CubeLevel::prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times,
-                                  const Progress& progress) {
+                              const Progress& progress) {
   std::vector<std::unique_ptr<SweptLight>> before = std::exchange(lights, {});
   for (const Light& light : wanted) {
     const RaySource place = lightSource(light, outline().indexToWorld);
@@ -35,7 +36,7 @@ void CubeLevel::prepareLights(const Device& device, std::span<const Light> wante
 }
 
 void CubeLevel::prepareAmbient(const Device& device, const Lighting& lighting, const RaySource& eye, std::vector<StageTime>& times,
-                                   const Progress& progress) {
+                               const Progress& progress) {
   const glm::ivec3 dimensions = outline().dimensions;
   const int edge = ambientCellEdge(dimensions, lighting.phaseG != 0.0);
   FV_CHECK_EQ(kCubeEdge % edge, 0);
@@ -58,10 +59,15 @@ void CubeLevel::prepareAmbient(const Device& device, const Lighting& lighting, c
     }
     ambient.emplace(device, dimensions, outline().indexToWorld, edge, extinctions);
   }
-  Commands commands(device);
-  if (!ambient->record(commands, lighting, eye)) return;
-  commands.submitAndWait(progress);
-  addTimes(times, commands.times());
+  try {
+    Commands commands(device);
+    if (!ambient->record(commands, lighting, eye)) return;
+    commands.submitAndWait(progress);
+    addTimes(times, commands.times());
+  } catch (...) {  // what was swept is not complete
+    ambient.reset();
+    throw;
+  }
 }
 
 }  // namespace freevoxels

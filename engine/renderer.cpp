@@ -5,6 +5,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/machine.h"
+#include "engine/core/parameter.h"
 #include "engine/cube_drawing.h"
 #include "engine/renderer_state.h"
 #include "engine/volume/emission_light.h"
@@ -13,13 +14,26 @@ namespace freevoxels {
 
 namespace {
 
-/// Whether the volume is certainly too large for the device, or what is read of it for this machine, so that reading it is no use.
+/// Whether the volume is certainly too large for the device, or what is read of it for this machine. Of one in memory, of which transparent
+/// voxels take nothing, only the box tells.
 bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
   const Volume& outline = source.outline();
+  if (source.isInMemory()) return outline.voxelCount() > maximumVoxels(device);
   const std::uint64_t active = outline.activeVoxels;
-  if (!source.isInMemory() && active > machineMemoryBytes() / 2 / sizeof(float)) return true;
-  return exceedsDevice(device.memoryBytes(), maximumVoxels(device), outline.dimensions, active) ||
+  return active > machineMemoryBytes() / 2 / sizeof(float) ||
+         exceedsDevice(device.memoryBytes(), maximumVoxels(device), outline.dimensions, active) ||
          leastGatherBytes(brickVoxels(source), outline.dimensions, outline.indexToWorld, nullptr, emits) > device.memoryBytes();
+}
+
+/// Instead of reading a file whose volume cannot be held.
+[[noreturn]] void failTooLarge(const Device& device, const Volume& outline, const std::string& whyNotCubes) {
+  const glm::ivec3 box = outline.dimensions;
+  fail(ErrorKind::OutOfMemory,
+       "a volume of {}x{}x{} voxels, {} million of them with data, needs more than the {} MiB of device memory or half of the {} MiB of "
+       "this machine: "
+       "raise {}, or crop or resample the volume; it cannot be drawn piece by piece, as {}",
+       box.x, box.y, box.z, outline.activeVoxels / 1000000, device.memoryBytes() >> 20, machineMemoryBytes() >> 20,
+       Parameter("memory-limit"), whyNotCubes);
 }
 
 }  // namespace
@@ -27,11 +41,8 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
 Renderer::Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
                    const TableSettings& table, const Progress& progress)
     : device_(device), source_(std::move(source)), classification_(classification), table_(table) {
-  if (exceeds(device, *source_, classification.emission.has_value())) {
-    inCubes_ = true;
-    return;
-  }
-  if (makesEmissionLight()) return;  // which depends on the frame
+  isTooLarge_ = inCubes_ = exceeds(device, *source_, classification.emission.has_value());
+  if (isTooLarge_ || makesEmissionLight()) return;  // the latter depends on the frame
   try {
     whole(false, progress);
   } catch (const Error& error) {
@@ -58,17 +69,19 @@ Renderer::State& Renderer::whole(bool lit, const Progress& progress) {
   if (state_ && (!makesEmissionLight() || wantsLight == (state_->classification.emissionLight != nullptr))) return *state_;
   state_.reset();
   cubes_.reset();
+  builtInFrame_ = true;
   std::vector<StageTime> times;
+  if (!volume_ && source_->isInMemory()) volume_ = source_->whole();
   if (!volume_) {
-    if (source_->isInMemory()) {
-      volume_ = source_->whole();
-    } else {
-      const StageTimer timer(times, "read volume");
-      volume_ = source_->whole(progress);
-    }
+    const StageTimer timer(times, "read volume");
+    volume_ = source_->whole(progress);
+  }
+  if (wantsLight && !emissionLight_) {
+    const StageTimer timer(times, "light of emission");
+    emissionLight_ = std::make_shared<const EmissionLight>(*volume_, classification_);
   }
   Classification classification = classification_;
-  if (wantsLight) classification.emissionLight = std::make_shared<const EmissionLight>(*volume_, classification_);
+  if (wantsLight) classification.emissionLight = emissionLight_;
   auto state = std::make_unique<State>(State{.device = device_,
                                              .hostVolume = *volume_,
                                              .classification = std::move(classification),
@@ -89,10 +102,10 @@ CubeDrawing& Renderer::cubes() {
 bool Renderer::surelyFits(const FrameSettings& settings) const {
   const Volume& outline = source_->outline();
   if (CubeDrawing::whyNot(outline.dimensions, settings)) return true;
-  constexpr std::uint64_t kMargin = 2;  // for what the least does not count: blocks, rays of the eye, images
+  constexpr std::uint64_t kMargin = 2;  // for what the least does not count: blocks and images
   return !inCubes_ && kMargin * leastGatherBytes(brickVoxels(*source_), outline.dimensions, outline.indexToWorld,
-                                                 settings.lighting ? &*settings.lighting : nullptr,
-                                                 classification_.emission.has_value()) <= device_.memoryBytes();
+                                                 settings.lighting ? &*settings.lighting : nullptr, classification_.emission.has_value()) <=
+                          device_.memoryBytes();
 }
 
 void Renderer::drawInCubes() {
@@ -111,13 +124,22 @@ Error Renderer::withNeed(const Error& error, const FrameSettings& settings, cons
 /// Draws a frame of the whole volume, or cube by cube if that is too large for the device. Where it can be drawn cube by cube, nothing is
 /// drawn otherwise for lack of memory, so that the image does not depend on it. `mayChange` says whether lack of memory may change the way.
 template <typename DrawWhole, typename DrawCubes>
-auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole, const DrawCubes& drawCubes) {
-  checkFrameFits(device_, settings);
+auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole,
+                    const DrawCubes& drawCubes) {
+  builtInFrame_ = false;
   settings.draw = drawsByGathering(settings) ? Draw::Gather : Draw::Splats;
   const std::optional<std::string> whyNotCubes = CubeDrawing::whyNot(source_->outline().dimensions, settings);
+  try {
+    checkFrameFits(device_, settings);
+  } catch (const Error& error) {
+    if (whyNotCubes) throw withNeed(error, settings, *whyNotCubes);
+    CubeDrawing alone(device_, source_, classification_, table_);
+    return drawCubes(alone, settings);  // which says what the frame needs
+  }
   if (!whyNotCubes && settings.lighting) settings.lighting->attenuation = lightAttenuationFor(settings);
   drewInCubes_ = inCubes_ && !whyNotCubes;
   if (!drewInCubes_) {
+    if (isTooLarge_ && !source_->isInMemory()) failTooLarge(device_, source_->outline(), *whyNotCubes);
     try {
       return drawWhole(whole(settings.lighting.has_value(), progress), settings);
     } catch (const Error& error) {
@@ -169,7 +191,7 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   FV_CHECK_LE(part.count, kShares);
   checkCamera(camera);
   FrameSettings settings = wanted;
-  settings.cullThreshold = 0.0f;
+  if (!drawsByGathering(settings)) settings.cullThreshold = 0.0f;  // what hides a splat may be another part's
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     return drawsByGathering(fitting) ? state.gatherShares(camera, fitting, part, progress) : state.splatShares(camera, fitting, part, progress);
   };
@@ -183,8 +205,17 @@ VolumeMemory Renderer::memory() const {
   return state_ ? state_->memoryOfVolume() : cubes_ ? cubes_->memory() : VolumeMemory();
 }
 
-std::vector<StageTime> Renderer::timings() const {
+std::vector<StageTime> Renderer::buildTimings() const {
+  return state_ ? state_->buildTimes : std::vector<StageTime>();
+}
+
+std::vector<StageTime> Renderer::frameTimings() const {
   if (!state_) return cubes_ ? cubes_->timings() : std::vector<StageTime>();
+  return builtInFrame_ ? timings() : state_->frameTimes;
+}
+
+std::vector<StageTime> Renderer::timings() const {
+  if (!state_) return frameTimings();
   std::vector<StageTime> times = state_->buildTimes;
   std::ranges::copy(state_->frameTimes, std::back_inserter(times));
   return times;

@@ -34,7 +34,8 @@ class Renderer {
  public:
   /// Uploads the volume if it fits, and makes what every frame needs: classified blocks and their lists, or for a volume that is
   /// classified after interpolation its scalars; the blocks are then made for the first frame that needs them for lights, levels of detail
-  /// or splats. The attenuation table is made for the first frame that reads it, its levels for the first that may draw or leave out blocks.
+  /// or splats. The attenuation table is made for the first frame that reads it, its levels for the first that may draw or leave out
+  /// blocks.
   Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
   /// Of a volume in memory, which must outlive the renderer.
@@ -52,8 +53,8 @@ class Renderer {
 
   /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
   /// devices of one kind that all draw the whole volume, or all cube by cube. resolveSums makes the image. Drawn as render() would, by
-  /// gathering or by splats, with nothing left out as hidden. `settings.composite` must not be Sorted. Lack of memory is an error here where
-  /// it would make render() draw cubes, as other processes could not know.
+  /// gathering or by splats, the latter with nothing left out as hidden. `settings.composite` must not be Sorted. Lack of memory is an
+  /// error here where it would make render() draw cubes, as other processes could not know.
   FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress = {});
 
   /// Whether the gather takes so much less than the device's memory that frames will be drawn of the whole volume, and not cube by cube.
@@ -68,8 +69,12 @@ class Renderer {
 
   /// Memory of the volume, including the table even if no frame has read it; or of a cube.
   VolumeMemory memory() const;
-  /// Stage times of the constructor and of the last frame, in order.
+  /// Stage times of what is kept for all frames, and of the last frame, in order.
   std::vector<StageTime> timings() const;
+  /// Those of what is kept, as it was made last; none where frames are drawn cube by cube.
+  std::vector<StageTime> buildTimings() const;
+  /// Those of the last frame, in which what is kept is included where it was made for that frame.
+  std::vector<StageTime> frameTimings() const;
   /// The number of occupied voxels. Unknown until a frame needs the blocks of these.
   std::optional<std::uint64_t> occupiedVoxelCount() const;
   /// The counts of the last frame's cut; none without one.
@@ -94,8 +99,11 @@ class Renderer {
   std::shared_ptr<const Volume> volume_;  ///< the whole volume on the host, as long as frames are drawn of it; longer than `state_`
   std::unique_ptr<State> state_;          ///< and on the device; null where it does not fit
   std::unique_ptr<CubeDrawing> cubes_;
-  bool inCubes_ = false;                 ///< whether gathered frames are drawn cube by cube
-  bool drewInCubes_ = false;
+  std::shared_ptr<const EmissionLight> emissionLight_;  ///< null until a frame needs one that is made here
+  bool isTooLarge_ = false;                             ///< whether the whole volume certainly does not fit
+  bool inCubes_ = false;                                ///< whether gathered frames are drawn cube by cube
+  bool drewInCubes_ = false;                            ///< whether the last frame was
+  bool builtInFrame_ = false;                           ///< whether the last frame has made what is kept
 };
 
 }  // namespace freevoxels

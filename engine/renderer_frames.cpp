@@ -167,11 +167,11 @@ Renderer::State::Splatting Renderer::State::recordSplats(Commands& commands, con
 
 /// What the gather keeps of the volume for further frames is made by a submission of its own, so that a frame that is
 /// abandoned while its image is drawn leaves it complete.
-void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, GatherPass::Extent marched, const Progress& progress) {
+void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, const Progress& progress) {
   try {
     if (!gatherVolume) gatherVolume.emplace(device, hostVolume, classification, built, frameTimes);
     gatherVolume->prepare(shading, frameTimes);
-    GatherPass::compileAhead(device, *gatherVolume, shading.axes, shading.frame.detail.coarsest > 0, marched);
+    GatherPass::compileAhead(device, *gatherVolume, shading.axes, shading.frame.detail.coarsest > 0);
     Commands commands(device);
     gatherVolume->record(commands, shading);
     if (commands.empty()) return;
@@ -184,8 +184,7 @@ void Renderer::State::prepareVolume(const GatherVolume::Shading& shading, Gather
 }
 
 /// All that a gathered frame needs before its samples are marched.
-Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, const FrameSettings& wanted, GatherPass::Extent marched,
-                                                          const Progress& progress) {
+Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
   frameTimes.clear();
   lastDrawn = nullptr;
   lastLackedRays = false;
@@ -214,7 +213,7 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
                  .lights = settings.lighting ? &*lights : nullptr,
                  .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
                  .keptQuadBytes = planKeptQuadBytes(device)},
-                marched, progress);
+                progress);
   if (!gather) gather.emplace(device);
   gatherVolume->describe(frame.lattice);
   return frame;
@@ -223,7 +222,7 @@ Renderer::State::Gathering Renderer::State::prepareGather(const Camera& camera, 
 /// Reads the image in the targets, without their optical depth.
 std::shared_ptr<const FrameTargets> Renderer::State::recordGather(Commands& commands, const Camera& camera, const FrameSettings& wanted,
                                                                   const Progress& progress) {
-  const Gathering frame = prepareGather(camera, wanted, GatherPass::Extent::Whole, progress);
+  const Gathering frame = prepareGather(camera, wanted, progress);
   const std::shared_ptr<const FrameTargets> targets = targetPool.take(device, frame.settings, TargetKind::Image);
   gather->record(commands, *gatherVolume, frame.lattice, *targets);
   return targets;
@@ -231,15 +230,20 @@ std::shared_ptr<const FrameTargets> Renderer::State::recordGather(Commands& comm
 
 FixedSums Renderer::State::gatherShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,
                                         const Progress& progress) {
-  const Gathering frame = prepareGather(camera, settings, GatherPass::Extent::Part, progress);
-  if (!gatherPart) gatherPart.emplace(device);
+  const Gathering frame = prepareGather(camera, settings, progress);
+  FixedSums sums = sumsOfSamples(frame.lattice, gatherVolume->hasScalars(), sumsLayout(built.volume, frame.constants, frame.settings));
+  const glm::ivec2 rows = rowsOfPart(frame.lattice, part);
+  if (rows.x == rows.y) return sums;
+  const shader::GatherFrame own = frameOfRows(frame.lattice, rows);
   Commands commands(device);
-  gatherPart->record(commands, *gather, *gatherVolume, built.volume, frame.lattice, frame.constants.eye, part,
-                     sumsLayout(built.volume, frame.constants, frame.settings));
+  gather->begin(commands, own);
+  commands.beginPass("gather");
+  gather->recordSamples(commands, *gatherVolume, own);
   commands.submitAndWait(progress);
   addTimes(frameTimes, commands.times());
   const StageTimer timer(frameTimes, "copy to host");
-  return gatherPart->read();
+  addSamples(sums, gather->downloadGathered(), rows);
+  return sums;
 }
 
 FixedSums Renderer::State::splatShares(const Camera& camera, const FrameSettings& settings, const SharePart& part,

@@ -7,10 +7,11 @@
 namespace freevoxels {
 
 RendererStages::RendererStages(const Renderer& renderer)
-    : state_(renderer.state_ ? *renderer.state_
-                             : throw Error(ErrorKind::OutOfMemory, fmt::format("the volume does not fit into the device's memory, in which its table and "
-                                                                               "its blocks are looked at: raise {}",
-                                                                               Parameter("memory-limit")))) {}
+    : state_(renderer.state_
+                 ? *renderer.state_
+                 : throw Error(ErrorKind::OutOfMemory, fmt::format("the volume is not on the device as a whole, where its table and its "
+                                                                   "blocks are looked at: draw a frame first, or raise {}",
+                                                                   Parameter("memory-limit")))) {}
 
 std::vector<SplatSums> RendererStages::renderSums(const Camera& camera, const FrameSettings& settings) const {
   FV_CHECK_EQ(settings.composite == Composite::Sorted, false);
@@ -37,7 +38,7 @@ void RendererStages::clearGather() const {
 std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const FrameSettings& settings,
                                                     std::span<const std::uint32_t> places) const {
   clearGather();
-  const Renderer::State::Gathering frame = state_.prepareGather(camera, settings, GatherPass::Extent::Whole, {});
+  const Renderer::State::Gathering frame = state_.prepareGather(camera, settings, {});
   Commands commands(state_.device);
   state_.gather->begin(commands, frame.lattice);
   state_.gather->recordListed(commands, *state_.gatherVolume, frame.lattice, places);

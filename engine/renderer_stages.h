@@ -15,7 +15,8 @@
 
 namespace freevoxels {
 
-/// Refers to a renderer, which must outlive it, and which draws the volume as a whole: else fails with ErrorKind::OutOfMemory. Makes what no frame has needed yet. All functions wait for the device.
+/// Refers to a renderer, which must outlive it, and which draws the volume as a whole: else fails with ErrorKind::OutOfMemory. Makes what
+/// no frame has needed yet. All functions wait for the device.
 class RendererStages {
  public:
   explicit RendererStages(const Renderer& renderer);

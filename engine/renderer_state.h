@@ -1,5 +1,6 @@
 #pragma once
-// What a Renderer keeps between frames of a volume that is on the device as a whole, and the stages of a frame. Only renderer*.cpp include it.
+// What a Renderer keeps between frames of a volume that is on the device as a whole, and the stages of a frame. Only renderer*.cpp include
+// it.
 
 #include <memory>
 #include <optional>
@@ -7,7 +8,8 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/attenuation/table_levels.h"
-#include "engine/gathering/gather_part.h"
+#include "engine/gathering/gather_pass.h"
+#include "engine/gathering/gather_rows.h"
 #include "engine/lighting/light_pass.h"
 #include "engine/octree/block_list.h"
 #include "engine/octree/device_volume.h"
@@ -41,7 +43,6 @@ struct Renderer::State {
   std::unique_ptr<ShareDrawing> shares;
   std::optional<GatherVolume> gatherVolume;
   std::optional<GatherPass> gather;
-  std::optional<GatherPartPass> gatherPart;
   std::optional<LightPass> lights;
   TargetPool targetPool;
   TargetReadback colorReadback, distanceReadback;
@@ -71,8 +72,8 @@ struct Renderer::State {
     FrameConstants constants;
     shader::GatherFrame lattice;
   };
-  Gathering prepareGather(const Camera& camera, const FrameSettings& wanted, GatherPass::Extent marched, const Progress& progress);
-  void prepareVolume(const GatherVolume::Shading& shading, GatherPass::Extent marched, const Progress& progress);
+  Gathering prepareGather(const Camera& camera, const FrameSettings& wanted, const Progress& progress);
+  void prepareVolume(const GatherVolume::Shading& shading, const Progress& progress);
   std::shared_ptr<const FrameTargets> recordGather(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                                    const Progress& progress);
   std::shared_ptr<const FrameTargets> recordImage(Commands& commands, const Camera& camera, const FrameSettings& settings,

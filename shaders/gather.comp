@@ -20,7 +20,7 @@ int emptyGroups(Slices level, Ray ray, int slice) {
   const float first = float(slice), last = float(slice) + ray.direction * float(ray.group - 1);
   const vec2 low = min(ray.origin + ray.slope * first, ray.origin + ray.slope * last);
   ivec3 place = ivec3(floor(vec3(low, min(first, last))));
-  if (kRegion) place -= level.first;
+  if (kCube) place -= level.first;
   const ivec3 cell = clamp(place >> kSkipLevels, ivec3(0), level.lastSkip);
   return int(texelFetch(skipCells, level.firstSkip + cell.x * level.skipStrides.x + cell.y * level.skipStrides.y +
                                        cell.z * level.skipStrides.z).x);
@@ -43,8 +43,8 @@ ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
   return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
 }
 
-// With kRegion: the slices, of which the first and the last may be too many, on which the ray is in the cube.
-ivec2 slicesInRegion(Slices level, Ray ray) {
+// With kCube: the slices, of which the first and the last may be too many, on which the ray is in the cube.
+ivec2 slicesInCube(Slices level, Ray ray) {
   vec2 range = vec2(level.begin.z, level.end.z - 1);
   [[unroll]] for (int side = 0; side < 2; ++side) {
     const float slope = abs(ray.slope[side]) < 1e-7 ? 1e-7 : ray.slope[side];
@@ -119,8 +119,8 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
   const bool stretches = scalars || kSampled;
   if (stretches) ++left;
   SliceValues last = emptySliceValues();
-  if (kRegion) {
-    const ivec2 own = slicesInRegion(level, ray);
+  if (kCube) {
+    const ivec2 own = slicesInCube(level, ray);
     const int before = max(direction > 0 ? own.x - slice : slice - own.y, 0);
     slice += direction * before;
     // And the slice that ends the last stretch.
@@ -136,7 +136,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
         if (left > 0 && left < tested) {
           tested = left;
           // A stretch from the slice before may add something, so that this one has to be empty, too.
-          const int before = kParts || (left == leftBefore && last.coverage > 0.0) ? 1 : 0;
+          const int before = left == leftBefore && last.coverage > 0.0 ? 1 : 0;
           left -= max(emptyGroups(level, ray, slice + direction * (leftBefore - left - before)) * ray.group - before, 0);
         }
       } while (left > 0 && left < tested);
@@ -152,7 +152,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
       do {
         if (left > rest) addNext(sums, last, slice, left, level, ray, rest, final, scalars);
       } while (left > rest);
-      if (!kParts && sums.transmittance <= endTransmittance) left = 0;
+      if (sums.transmittance <= endTransmittance) left = 0;
     }
   } while (left > 0);
 }
@@ -168,11 +168,11 @@ Slices slicesOf(int levelIndex) {
   slices.firstSkip = level.firstSkip;
   slices.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
   slices.lastSkip = ivec3(level.lastSkip[kSideA], level.lastSkip[kSideB], level.lastSkip[kAxis]);
-  if (kRegion) {
-    const GatherRegion region = frame.region;
-    slices.first = ivec3(region.first[kSideA], region.first[kSideB], region.first[kAxis]);
-    slices.begin = ivec3(region.begin[kSideA], region.begin[kSideB], region.begin[kAxis]);
-    slices.end = ivec3(region.end[kSideA], region.end[kSideB], region.end[kAxis]);
+  if (kCube) {
+    const GatherCube cube = frame.cube;
+    slices.first = ivec3(cube.first[kSideA], cube.first[kSideB], cube.first[kAxis]);
+    slices.begin = ivec3(cube.begin[kSideA], cube.begin[kSideB], cube.begin[kAxis]);
+    slices.end = ivec3(cube.end[kSideA], cube.end[kSideB], cube.end[kAxis]);
   }
   return slices;
 }
@@ -203,9 +203,8 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   ray.perSlice = edge / abs(sampleRay.along);
   const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[sampleRay.along > 0.0 ? 1 : 0][levelIndex]);
   sums.distance = 0.0;
-  if (kParts || sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, scalars);
+  if (sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, scalars);
   distanceSum += ray.perSlice * sums.distance;
-  if (kParts) endBrick(sums, ray);
 }
 
 // The sample of this thread, relative to the first one of those that are marched; beyond them if there is none.
@@ -221,8 +220,8 @@ ivec2 sampleOfThread() {
 
 void main() {
   ivec2 index = sampleOfThread();
-  if (any(greaterThanEqual(index, kRegion ? frame.region.extent : frame.seenExtent))) return;
-  index += kRegion ? frame.region.corner : frame.firstSeen;
+  if (any(greaterThanEqual(index, kCube ? frame.cube.extent : frame.seenExtent))) return;
+  index += kCube ? frame.cube.corner : frame.firstSeen;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   const vec3 components = alongAxes(position);
   if (marchAxis(position, components) != kAxis) return;
@@ -233,9 +232,7 @@ void main() {
   sampleRay.slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / sampleRay.along;
   sampleRay.middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / sampleRay.along;
   sampleRay.eye = dot(frame.axes[kAxis].eye, position);
-  Sums sums = Sums(vec3(0.0), 0.0, 1.0, 0.0, 1.0, 0);
-  if (kParts)
-    [[unroll]] for (int c = 0; c < 6; ++c) partSums[c] = uvec2(0);
+  Sums sums = Sums(vec3(0.0), 0.0, 1.0);
   float distanceSum = 0.0;  // sum of e times world distance from the eye plane
   const int sampleIndex = index.x + index.y * frame.samples.x;
   vec3 colorBefore = vec3(0.0);
@@ -253,13 +250,9 @@ void main() {
   if (!kScalars || kLevels)
     for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
       marchLevel(sums, distanceSum, sampleRay, level, false);
-  if (kParts) {
-    storePart(index - frame.firstSeen);
-    return;
-  }
   // A ray that ended early becomes opaque: what lies behind its end is taken to have the mean colour of what lies in front.
   const float energy = 1.0 - sums.transmittance;
-  const bool complete = !kRegion || frame.region.isLast != 0;
+  const bool complete = !kCube || frame.cube.isLast != 0;
   const float whole = sums.transmittance > frame.endTransmittance || !complete ? 1.0 : 1.0 / energy;
   imageStore(colorEnergy, sampleIndex, whole * vec4(colorBefore + frame.sourceUnit * sums.color, energy));
   imageStore(distances, sampleIndex, vec4(whole * distanceSum));

@@ -1,7 +1,6 @@
 // Blocks that are classified: source term and extinction are interpolated.
 #ifndef GATHER_BLOCKS_GLSL
 #define GATHER_BLOCKS_GLSL
-#include "gather_parts.glsl"
 #include "gather_surfaces.glsl"
 #include "packed_light.glsl"
 
@@ -43,10 +42,7 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
-  if (kParts || kRegion) {
-    if (ownBrick == 0 || medium == vec4(0.0)) return;
-    if (kParts) enterBrick(sums, ray, ownBrick, float(slice) - 0.5 * ray.direction);
-  }
+  if (kCube && (inCube == 0 || medium == vec4(0.0))) return;
   SegmentLight lit;
   addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, lit, ray.toEye);
 }
@@ -80,14 +76,13 @@ vec3 leavingEmission(SliceValues last, SliceValues found, float stretch) {
 // light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
 void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
   SliceValues found = blockValuesAt(level, ray, within ? slice : slice - int(ray.direction), within);
-  const int brick = ownBrick;
+  const int isOwn = inCube;
   const vec4 medium = 0.5 * (last.medium + found.medium);
-  if (kParts || kRegion) {
-    if (brick == 0 || (medium == vec4(0.0) && (!kEmits || last.emission + found.emission == vec3(0.0)))) {
+  if (kCube) {
+    if (isOwn == 0 || (medium == vec4(0.0) && (!kEmits || last.emission + found.emission == vec3(0.0)))) {
       last = found;
       return;
     }
-    if (kParts) enterBrick(sums, ray, brick, float(slice) - ray.direction);
   }
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   SegmentLight lit;

@@ -56,11 +56,6 @@ FV_CONSTANT float kMinAlong = 0.5f;
 // Slices that are tested for emptiness together on rays that move by more than a block a slice, instead of kSkipGroup.
 FV_CONSTANT int kObliqueGroup = kSkipGroup / 2;
 
-// The bit of a brick's number that says that the brick belongs to the part that is drawn.
-FV_CONSTANT uint kOwnBrick = 0x80000000u;
-// Largest optical depth that a brick of a part adds to its sample: what is behind that is invisible.
-FV_CONSTANT float kMaxBrickDepth = 16.0f;
-
 // How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the
 // image's middle. The sides are the other two axes in ascending order. Values are affine in the position:
 // value . (1, x, y).
@@ -97,18 +92,9 @@ struct SampleLight {
   vec3 lightsFirst, lightsLast;
 };
 
-// A frame of which only some bricks are marched (engine/gathering/gather_part.h). Each of their sums is computed with the
-// transmittance of the eye's rays (ray_sweep.comp) in front of it, and added in fixed point.
-struct GatherPart {
-  FaceRays fans[6];      // the eye's rays; depths up to the planes for voxels that are classified after interpolation, otherwise in front of layers
-  uvec2 sums;            // device address of the sums: [channel][sample that is seen], low word and high word
-  uvec2 overflow;        // device address of a word that becomes 1 if a sum is beyond its range
-  int colorDigits, energyDigits, depthDigits, distanceDigits;  // behind the binary point
-};
-
-// A cube of a volume whose voxels alone are on the device (engine/streamed_renderer.h): rays march what is in it, behind the cubes that
+// A cube of a volume whose voxels alone are on the device (engine/cube_drawing.h): rays march what is in it, behind the cubes that
 // were marched before, of which the sums of the lattice hold the results. Positions on rays are those in the whole volume.
-struct GatherRegion {
+struct GatherCube {
   ivec3 first;            // first voxel of the box around the cube, whose bricks and cells the levels number; a multiple of a brick's edge
   ivec3 begin, end;       // the cube has the quads of the voxels from `begin` to `end` - 1
   ivec2 corner, extent;   // the rectangle of the lattice from which the cube is seen
@@ -140,8 +126,7 @@ struct SamplesPush {
 };
 
 struct GatherFrame {
-  GatherPart part;        // only where the dispatch is specialised for parts
-  GatherRegion region;    // only where it is specialised for regions
+  GatherCube cube;  // only where it is specialised for cubes
   SampleLight lights[kMaxSampleLights];
   vec3 tint;              // factor of the extinction between light and voxel
   float phaseG;
@@ -172,6 +157,7 @@ struct GatherFrame {
   // The rectangle of samples outside of which all sums are 0, and are neither marched nor stored: `firstSeen` is even and `seenExtent` odd,
   // so that coarse samples are on its borders.
   ivec2 firstSeen, seenExtent;
+  ivec2 ownCells;  // first and end of the rows of cells (gather_adaptive.glsl) whose samples are refined, relative to the first one seen
   ivec2 firstPixel, pixelExtent;  // the rectangle of pixels outside of which the image is empty
 };
 

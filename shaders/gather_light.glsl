@@ -84,7 +84,6 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
   sums.color += sums.transmittance * segmentLength * source;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
-  if (kParts) sums.depth += depth;
 }
 
 float lightDepth(int slot, int quad, vec4 weights) {

@@ -8,8 +8,7 @@
 const bool kScalars = SCALARS;    // whether voxels are classified after interpolation
 const bool kSampled = SAMPLED;    // whether light is evaluated at samples
 const bool kSurfaces = SURFACES;  // whether they then may be surfaces
-const bool kParts = PARTS;        // whether only the bricks of a part are marched (GatherPart)
-const bool kRegion = REGION;      // whether only a cube of the volume is marched, behind those that were marched before (GatherRegion)
+const bool kCube = CUBE;      // whether only a cube of the volume is marched, behind those that were marched before (GatherCube)
 
 layout(constant_id = 0) const int kAxis = 2;          // rays with another axis are marched by other dispatches
 layout(constant_id = 1) const bool kTowards = false;  // whether the light of blocks depends on the direction to the eye
@@ -27,7 +26,7 @@ layout(constant_id = 10) const bool kLevels = true;   // whether levels of block
 // integers. Lavapipe executes the bodies of other loops once more, masked; and what is assigned in a loop outside of the `if` it may compute
 // anew, for lanes that have left, from what they assigned last. Of a condition that is a bool the compiler may remove the `if`.
 
-layout(binding = 1) uniform utextureBuffer brickNumbers;     // with kParts, bricks of the part have kOwnBrick
+layout(binding = 1) uniform utextureBuffer brickNumbers;
 // Each quad has two neighbours along the first side, at this position and at the next one along the second
 // side.
 layout(binding = 2) uniform utextureBuffer mediumQuads;      // extinctions, four halves; or four codes of scalars
@@ -47,8 +46,6 @@ layout(binding = 12) uniform utextureBuffer lightQuads3;
 layout(binding = 13) uniform utextureBuffer lightQuads4;
 layout(binding = 14) uniform utextureBuffer lightQuads5;
 layout(binding = 15) uniform utextureBuffer lightQuads6;
-layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer PartSums { uvec2 values[]; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer Overflow { uint overflow; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
@@ -80,24 +77,17 @@ struct Slices {
   int firstSkip;
   ivec3 skipStrides;    // of the sides and the axis
   ivec3 lastSkip;       // of the sides and the axis
-  ivec3 first, begin, end;  // with kRegion: GatherRegion, of the sides and the axis
+  ivec3 first, begin, end;  // with kCube: GatherCube, of the sides and the axis
 };
 
 struct Sums {
   vec3 color;
   float distance;       // sum of e times slices from the eye
   float transmittance;
-  // With kParts, the sums are those of one brick, and the optical depth is summed up too:
-  float depth;
-  float begin;          // transmittance in front of the brick
-  int brick;            // 0 if none was entered
 };
 
-// With kParts: sums of the bricks so far, in fixed point (SumChannel), and whether they were in range.
-uvec2 partSums[6];
-bool partFits = true;
-// The brick of the last quad if it belongs to the part, otherwise 0; with kRegion 1 if the quad is in the cube.
-int ownBrick = 0;
+// With kCube: 1 if the last quad is in the cube, otherwise 0.
+int inCube = 0;
 
 // The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission, depths, ambient and the
 // gradient; scalarValuesAt() sets all but emission, and leaves light and gradient to be found later (hasLight, hasGradient).
@@ -120,7 +110,7 @@ struct Stretch {
   int slice;        // the second of them
   vec4 near, far;   // extinction times colour and extinction of its halves
   float coverage;   // in its middle
-  int brick;        // ownBrick on the second slice
+  int inCube;       // on the second slice
   bool adds;        // whether it adds anything to the sums
 };
 
@@ -179,17 +169,13 @@ vec2 sideWeights(float position, int count, out int low) {
 
 // The number of the brick that has the block at a position on the sides and the axis.
 int brickAt(Slices level, ivec3 block) {
-  if (kRegion) {
-    ownBrick = all(greaterThanEqual(block, level.begin)) && all(lessThan(block, level.end)) ? 1 : 0;
+  if (kCube) {
+    inCube = all(greaterThanEqual(block, level.begin)) && all(lessThan(block, level.end)) ? 1 : 0;
     block -= level.first;
   }
   const ivec3 cell = block >> kBrickLevels;
-  const uint brick = texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
-                                                  cell.z * level.cellStrides.z).x;
-  if (!kParts) return int(brick);
-  const int number = int(brick & ~kOwnBrick);
-  ownBrick = (brick & kOwnBrick) != 0 ? number : 0;
-  return number;
+  return int(texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
+                                          cell.z * level.cellStrides.z).x);
 }
 
 // The quad of four blocks around a position on a slice, and their weights.

@@ -50,7 +50,8 @@ void main() {
   barrier();
   const uint count = countOfListed(cell);
   atomicAdd(total, count);
-  if (all(lessThan(cell, coarseExtent() - 1)) && count == 0) interpolate(cell, placeOfCoarse(cell));
+  const bool isOwn = cell.y >= frame.ownCells.x && cell.y < frame.ownCells.y;
+  if (isOwn && all(lessThan(cell, coarseExtent() - 1)) && count == 0) interpolate(cell, placeOfCoarse(cell));
   barrier();
   if (gl_LocalInvocationIndex == 0) groupCounts[gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x] = total;
 }

@@ -17,7 +17,7 @@ bool isRough(ivec2 cell) {
 
 // Whether the cell's samples along x and along y, of which cells of the last column and row lack some, are marched.
 bvec2 listsAlong(ivec2 cell) {
-  if (any(greaterThanEqual(cell, coarseExtent()))) return bvec2(false);
+  if (any(greaterThanEqual(cell, coarseExtent())) || cell.y < frame.ownCells.x || cell.y >= frame.ownCells.y) return bvec2(false);
   const bvec2 inside = lessThan(cell, coarseExtent() - 1);
   return all(inside) ? bvec2(isRough(cell)) : inside;
 }

@@ -180,7 +180,7 @@ Stretch scalarStretch(SliceValues last, Slices level, Ray ray, int slice, bool w
   const vec2 middle = scalarBetween(level, ray.origin + ray.slope * (float(slice) - 0.5 * ray.direction), before, within ? slice : -1, 0.5);
   const int there = within ? slice : before;
   SliceValues found = scalarValuesAt(level, ray.origin + ray.slope * float(there), there, ray.toEye);
-  stretch.brick = ownBrick;
+  stretch.inCube = inCube;
   if (!within) found.coverage = 0.0;
   SliceValues first, second;
   endsOf(first, second, last, found);
@@ -191,7 +191,7 @@ Stretch scalarStretch(SliceValues last, Slices level, Ray ray, int slice, bool w
   stretch.far = meanBetween(scalar, integral, medium, second.scalar, second.integral, second.medium);
   stretch.coverage = middle.y;
   stretch.adds = last.coverage + middle.y + found.coverage > 0.0 && stretch.near.a + stretch.far.a > 0.0;
-  if (kParts || kRegion) stretch.adds = stretch.adds && stretch.brick != 0;
+  if (kCube) stretch.adds = stretch.adds && stretch.inCube != 0;
   stretch.end = found;
   return stretch;
 }
@@ -201,10 +201,6 @@ void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, 
   endsOf(first, second, last, found);
   const int slice = stretch.slice;
   vec4 near = stretch.near, far = stretch.far;
-  if (kParts) {
-    enterBrick(sums, ray, stretch.brick, float(slice) - ray.direction);
-    last.hasLight = false;  // as it may have been computed for another brick, less exactly
-  }
   if (kLit) {
     near.rgb *= mix(first.light, second.light, 0.25);
     far.rgb *= mix(first.light, second.light, 0.75);

@@ -17,7 +17,7 @@ ORDER = [
     "engine/scene",        # camera, lights, environment, settings: plain data
     "engine/volume",       # volume files, procedural volumes, classification
     "engine/octree",       # the volume on the device: occupied blocks and their medium
-    "engine/attenuation",  # the table: sweeps, levels, pruning; rays from a source
+    "engine/attenuation",  # the table: sweeps, levels; rays from a source
     "engine/visibility",   # level of detail, culling
     "engine/lighting",     # light at voxels and in cells
     "engine/splatting",    # billboard splats, sums, resolve

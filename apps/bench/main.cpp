@@ -205,7 +205,8 @@ void measureCluster(const Device& device, bool quick, const std::string& json) {
   }
   fmt::print("{}\n", section.text);
   printRealRanks(quick ? 128 : 256);
-  if (!json.empty()) writeJson(json, {.facts = {{"device", device.description().name}, {"version", programVersion()}}, .sections = {section}});
+  if (!json.empty())
+    writeJson(json, {.facts = {{"device", device.description().name}, {"version", programVersion()}}, .sections = {section}});
 }
 
 }  // namespace
@@ -226,8 +227,8 @@ int main(int argc, char** argv) {
   app.add_option("--stages", wanted, "Only these stages, separated by commas [all]")
       ->delimiter(',')
       ->check(CLI::IsMember(stageNames()));
-  app.add_flag(
-      "--cluster", cluster, "Instead of the stages, how a frame scales that is divided among 8 to 128 ranks, each drawn on this device");
+  app.add_flag("--cluster", cluster,
+               "Instead of the stages, how a frame scales that is divided among 8 to 128 ranks, each drawn on this device");
   app.add_flag("--quick", extent.quick, "Smaller volumes and fewer runs");
   device.add(app);
   app.callback([&] {

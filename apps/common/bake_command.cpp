@@ -90,7 +90,8 @@ void BakeCommand::agree(const std::string& content, const BakeSettings& settings
 BakeTeam BakeCommand::team() const {
   if (group_ == nullptr) return {};
   const SharePart place = group_->place();
-  return {.index = place.index, .count = place.count, .bring = [this](std::vector<std::byte>& bytes, int from) { group_->bring(bytes, from); }};
+  return {
+      .index = place.index, .count = place.count, .bring = [this](std::vector<std::byte>& bytes, int from) { group_->bring(bytes, from); }};
 }
 
 void BakeCommand::run() {

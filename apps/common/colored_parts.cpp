@@ -41,13 +41,14 @@ glm::dvec3 partColor(int part) {
   return result;
 }
 
-FixedSums drawColoredParts(Renderer& renderer, const Camera& camera, const FrameSettings& settings, int parts,
-                           const Progress& progress) {
+FixedSums drawColoredParts(Renderer& renderer, const Camera& camera, const FrameSettings& settings, int parts, const Progress& progress) {
   FixedSums all;
   for (int part = 0; part < parts; ++part) {
     Progress ofPart;
     if (progress)
-      ofPart = [&](std::string_view stage, double fraction) { progress(fmt::format("part {} of {}: {}", part + 1, parts, stage), fraction); };
+      ofPart = [&](std::string_view stage, double fraction) {
+        progress(fmt::format("part {} of {}: {}", part + 1, parts, stage), fraction);
+      };
     FixedSums sums = renderer.renderShares(camera, settings, {part, parts}, ofPart);
     color(sums, partColor(part));
     if (part == 0)

@@ -15,7 +15,6 @@ glm::dvec3 partColor(int part);
 
 /// The sums of all shares, drawn as `parts` parts one after the other. The light of each part has the part's colour and keeps its
 /// luminance, so that lighting and shadows remain visible. 1 <= parts <= kShares.
-FixedSums drawColoredParts(Renderer& renderer, const Camera& camera, const FrameSettings& settings, int parts,
-                           const Progress& progress);
+FixedSums drawColoredParts(Renderer& renderer, const Camera& camera, const FrameSettings& settings, int parts, const Progress& progress);
 
 }  // namespace freevoxels

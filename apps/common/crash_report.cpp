@@ -62,7 +62,8 @@ void describeCrashesWithoutNote() {
     codeWithoutNote = ExitCode::OutOfMemory;
   } else if (getrlimit(RLIMIT_FSIZE, &limit) == 0 && limit.rlim_cur != RLIM_INFINITY) {
     sentenceWithoutNote = fmt::format(
-        "the program stopped, most likely as its files may have {} KiB (ulimit -f): drivers for the CPU have their memory in files, too; raise "
+        "the program stopped, most likely as its files may have {} KiB (ulimit -f): drivers for the CPU have their memory in files, too; "
+        "raise "
         "that limit",
         limit.rlim_cur >> 10);
     codeWithoutNote = ExitCode::Output;

@@ -41,8 +41,9 @@ int processThatMayOpen() {
   const int self = int(getpid());
   int first = 0;
   if (!openingProcess.compare_exchange_strong(first, self) && first != self)
-    fail(ErrorKind::Device, "this process was forked from one that uses a Vulkan device already, and cannot use one: start processes by 'spawn', as "
-                            "multiprocessing.get_context('spawn') does, or fork before the first image");
+    fail(ErrorKind::Device,
+         "this process was forked from one that uses a Vulkan device already, and cannot use one: start processes by 'spawn', as "
+         "multiprocessing.get_context('spawn') does, or fork before the first image");
   return self;
 }
 

@@ -15,10 +15,9 @@ void DeviceOptions::add(CLI::App& app) {
   addText(app, "--device", "INDEX|NAME|UUID", selector,
           "Device of 'freevoxels devices', or part of a name [a discrete GPU, then any GPU, then a CPU]")
       ->group("Device");
-  addWholeNumber(
-      app, "--memory-limit", "MIB", memoryLimit,
-      "Largest amount of device memory to use; volumes are swept in thinner slabs where necessary [all of the device's memory]",
-      {1.0, double(std::numeric_limits<int>::max())})
+  addWholeNumber(app, "--memory-limit", "MIB", memoryLimit,
+                 "Largest amount of device memory to use; volumes are swept in thinner slabs where necessary [all of the device's memory]",
+                 {1.0, double(std::numeric_limits<int>::max())})
       ->group("Device");
 }
 
@@ -71,8 +70,7 @@ void DeviceOptions::withDevice(const std::function<void(const Device&)>& work) c
 }
 
 void mentionCpu(const Device& device) {
-  if (device.isCpu())
-    spdlog::info("rendering on the CPU, {}; a GPU is used where there is one", device.description().name);
+  if (device.isCpu()) spdlog::info("rendering on the CPU, {}; a GPU is used where there is one", device.description().name);
 }
 
 }  // namespace freevoxels

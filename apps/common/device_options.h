@@ -32,8 +32,7 @@ bool validationRequested();
 void logValidation(std::string_view message);
 
 /// Calls `work` with a Vulkan instance; validation as in withDevice.
-void withInstance(const std::function<void(const Instance&)>& work,
-                  std::span<const char* const> extensions = {});
+void withInstance(const std::function<void(const Instance&)>& work, std::span<const char* const> extensions = {});
 
 /// Reports that the CPU does the work, if the device is not a GPU.
 void mentionCpu(const Device& device);

@@ -12,13 +12,20 @@ namespace freevoxels {
 
 ExitCode exitCodeOf(ErrorKind kind) {
   switch (kind) {
-    case ErrorKind::Usage: return ExitCode::Usage;
-    case ErrorKind::Input: return ExitCode::Input;
-    case ErrorKind::Output: return ExitCode::Output;
-    case ErrorKind::Device: return ExitCode::Device;
-    case ErrorKind::OutOfMemory: return ExitCode::OutOfMemory;
-    case ErrorKind::Comparison: return ExitCode::Comparison;
-    case ErrorKind::Internal: break;
+    case ErrorKind::Usage:
+      return ExitCode::Usage;
+    case ErrorKind::Input:
+      return ExitCode::Input;
+    case ErrorKind::Output:
+      return ExitCode::Output;
+    case ErrorKind::Device:
+      return ExitCode::Device;
+    case ErrorKind::OutOfMemory:
+      return ExitCode::OutOfMemory;
+    case ErrorKind::Comparison:
+      return ExitCode::Comparison;
+    case ErrorKind::Internal:
+      break;
   }
   return ExitCode::Internal;
 }
@@ -43,7 +50,8 @@ Failure currentFailure() {
   } catch (const std::exception& error) {
     // std::thread and oneTBB have different exceptions for it.
     if (std::string_view(error.what()).find(std::generic_category().message(EAGAIN)) != std::string_view::npos)
-      return {ExitCode::OutOfMemory, "no more threads can be started: raise the limits on threads and memory (ulimit -u, ulimit -v), or end other programs"};
+      return {ExitCode::OutOfMemory,
+              "no more threads can be started: raise the limits on threads and memory (ulimit -u, ulimit -v), or end other programs"};
     return {ExitCode::Internal, fmt::format("internal error, please report it: {}", error.what())};
   } catch (...) {
     return {ExitCode::Internal, "internal error, please report it: an exception of unknown type"};

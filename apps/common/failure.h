@@ -25,7 +25,9 @@ ExitCode exitCodeOf(ErrorKind kind);
 
 /// A text of the engine or the options with its parameters as options of the command line: "--memory-limit", "--draw splats".
 std::string withOptions(std::string_view text);
-inline std::string withOptions(const Error& error) { return withOptions(error.text()); }
+inline std::string withOptions(const Error& error) {
+  return withOptions(error.text());
+}
 
 struct Failure {
   ExitCode code = ExitCode::Internal;  ///< a program that fails so ends with it

@@ -197,9 +197,9 @@ class Survey {
   }
 
   const SceneDescription description_;
-  Subject contents_;  ///< what is seen of the frames
+  Subject contents_;          ///< what is seen of the frames
   Most largest_, brightest_;  ///< with most mass, and with most power
-  TemperatureGrid hottest_;  ///< the range of all frames
+  TemperatureGrid hottest_;   ///< the range of all frames
   bool hasAlbedo_ = false;
 };
 

@@ -42,8 +42,9 @@ bool SubmittedFrame::ready() const {
 void SubmittedFrame::wait() const {
   refuseInsideValidationLog();
   if (!ready() && DrawingTurns::anyIsHeldByThisThread())
-    fail(ErrorKind::Usage, "a frame that is not complete cannot be waited for in a progress function, as frames are drawn one after another: "
-                           "wait for it afterwards");
+    fail(ErrorKind::Usage,
+         "a frame that is not complete cannot be waited for in a progress function, as frames are drawn one after another: "
+         "wait for it afterwards");
   done_.get();
 }
 

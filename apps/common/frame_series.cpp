@@ -55,7 +55,9 @@ void logCubes(const Renderer& renderer) {
   spdlog::debug("drawn by gathering, cube by cube: the volume does not fit into memory at once");
   const std::vector<std::size_t> counts = renderer.cubesRead();
   for (std::size_t level = 0; level < counts.size(); ++level)
-    if (counts[level] > 0) spdlog::debug("{} cubes of {}³ voxels of level {} drawn for the last frame", counts[level], kCubeEdge, level);
+    if (counts[level] > 0)
+      spdlog::debug("{} cubes of {}³ blocks drawn for the last frame, each block 2^{} voxels of what was opened along an edge",
+                    counts[level], kCubeEdge, level);
 }
 
 }  // namespace
@@ -194,8 +196,7 @@ void FrameSeries::announce(const Scene& view, std::size_t frames) {
 void FrameSeries::agree(const Scene& view, const VolumeSource& source) {
   if (options_.drawsShares()) {
     const bool hasEnvironment = view.lighting && view.lighting->environment;
-    report_.contentHash =
-        contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
+    report_.contentHash = contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
     // The values of a file are not read yet: the header's checksum stands for those of all sections.
     if (const auto* const baked = dynamic_cast<const BakedSource*>(&source))
       report_.contentHash += fmt::format("-{:016x}", baked->file().header().hash);
@@ -211,14 +212,13 @@ void FrameSeries::agree(const Scene& view, const VolumeSource& source) {
 
 /// Has the processes of a group draw cube by cube where the volume may not fit on one of them.
 void FrameSeries::agreeOnCubes(Renderer& renderer, const FrameSettings& settings) {
-  if (!options_.drawsShares()) return;
+  if (!options_.drawsShares() || options_.shares.coloredParts) return;
   const std::uint64_t fits = renderer.surelyFits(settings) ? 1 : 0;
   if ((options_.group != nullptr ? options_.group->least(fits) : fits) == 0) renderer.drawInCubes();
 }
 
 void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs) {
-  const std::vector<StageTime> built = renderer.timings();
-  addTimes(report_.stages, built);
+  addTimes(report_.stages, renderer.buildTimings());
   agreeOnCubes(renderer, view.settings);
   Scene scene = view.scene;
   for (std::size_t i = 0; i < jobs.size(); ++i, ++progress_.drawn) {
@@ -232,8 +232,7 @@ void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::sp
       drawShares(renderer, scene, view.settings, jobs[i]);
     else
       complete(renderer.render(scene.camera, view.settings, progress_.progress()), isTransparent(renderer), scene, jobs[i]);
-    const std::vector<StageTime> times = renderer.timings();
-    addTimes(report_.stages, std::span(times).subspan(built.size()));
+    addTimes(report_.stages, renderer.frameTimings());
   }
   finishAddingUp();
   report(renderer, *scene.volume);

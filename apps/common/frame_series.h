@@ -70,7 +70,7 @@ class FrameSeries {
   const Device& device_;
   RunReport& report_;
   SeriesProgress progress_;
-  bool isFilm_ = false;              ///< whether there are several volumes
+  bool isFilm_ = false;                     ///< whether there are several volumes
   std::atomic<bool> hasReference_ = false;  ///< whether there is a reference_, also for the thread that reads volumes ahead
   std::optional<Scene> reference_;          ///< the film's, or the first frame's with a fixed view, else the last one's
   FrameWriter writer_;

@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 const std::vector<std::string> kDeviceKeys{"device", "memory-limit"};
 /// Options of `freevoxels render` that are no fields of a scene.
-const std::vector<std::string> kCommandLineKeys{"share", "sums", "color-parts", "fixed-view", "out-dir", "format",
-                                                "save-scene", "timings", "range", "skip-existing"};
+const std::vector<std::string> kCommandLineKeys{"share",  "sums",       "color-parts", "fixed-view", "out-dir",
+                                                "format", "save-scene", "timings",     "range",      "skip-existing"};
 
 /// The name of the field that a keyword means: "density-scale" for "density_scale".
 std::string nameOf(std::string keyword) {
@@ -65,8 +65,8 @@ void Reader::refuse(const std::string& section, const std::string& name) const {
     fail(ErrorKind::Usage, "{} is a group of options, and takes a dictionary of them", Parameter(name));
   const std::string given = quotedPart(section.empty() ? name : section + "." + name);
   if (section == "light" && nearestName(name, known).empty())
-    fail(ErrorKind::Usage, "there is no option {}; a single {} has a {} or a {}", Parameter(given), Parameter(section), Parameter("direction"),
-         Parameter("position"));
+    fail(ErrorKind::Usage, "there is no option {}; a single {} has a {} or a {}", Parameter(given), Parameter(section),
+         Parameter("direction"), Parameter("position"));
   if (const std::string meant = nearestName(name, known); !meant.empty())
     fail(ErrorKind::Usage, "there is no option {}; did you mean {}?", Parameter(given), Parameter(meant));
   fail(ErrorKind::Usage, "there is no option {}; 'freevoxels render --help' lists them", Parameter(given));
@@ -87,10 +87,8 @@ bool Reader::giveOther(const std::string& name, const Json& value) {
   if (name == "scene" && sceneFile_.empty()) sceneFile_ = text;
   if (name == "device" && !options_.device.selector) options_.device.selector = text;
   if (name == "memory-limit" && !options_.device.memoryLimit) {
-    const NumberForm form{.name = fmt::format("{}", Parameter(name)),
-                          .form = "MIB",
-                          .range = {1.0, double(std::numeric_limits<int>::max())},
-                          .whole = true};
+    const NumberForm form{
+        .name = fmt::format("{}", Parameter(name)), .form = "MIB", .range = {1.0, double(std::numeric_limits<int>::max())}, .whole = true};
     options_.device.memoryLimit = int(readNumbers(form, text)[0]);
   }
   return true;

@@ -93,8 +93,7 @@ const std::vector<OptionHelp> kLightHelp{
      "What a voxel does with light: scatter it as fog, or reflect it like a surface across the gradient; auto: gradient with a "
      "transfer function and for level sets, else scatter [auto]",
      true},
-    {"surface-share",
-     "Part of the light that surfaces reflect like surfaces, 0 to 1; the rest is scattered like fog [1]", true}};
+    {"surface-share", "Part of the light that surfaces reflect like surfaces, 0 to 1; the rest is scattered like fog [1]", true}};
 
 const std::vector<OptionHelp> kMethodHelp{
     {"composite",
@@ -119,8 +118,8 @@ const std::vector<OptionHelp> kMethodHelp{
      "sorted [1]",
      true},
     {"culling", "Whether blocks outside of the image or hidden by others are left out; --composite sorted draws all [yes]", true},
-    {"cull-threshold",
-     "Transmittance to the eye below which a block is hidden, and a ray of the gather ends; 0 hides nothing [1/512]", true},
+    {"cull-threshold", "Transmittance to the eye below which a block is hidden, and a ray of the gather ends; 0 hides nothing [1/512]",
+     true},
     {"hierarchy-filter", "Mean of its voxels' transmittances that a block has [geometric]", true},
     {"paper",
      "The paper's method, for comparison: --composite additive --attenuation nearest --directions 26 --code linear8 "

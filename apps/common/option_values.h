@@ -22,18 +22,16 @@ class Option;
 namespace freevoxels {
 
 /// `form` is how the help shows the value: "DEG", "X,Y,Z".
-CLI::Option* addNumber(CLI::App& app, const std::string& name, const std::string& form,
-                       std::optional<double>& target, const std::string& description, NumberRange range = {});
-CLI::Option* addPair(CLI::App& app, const std::string& name, const std::string& form,
-                     std::optional<glm::dvec2>& target, const std::string& description,
-                     NumberRange range = {});
-CLI::Option* addTriple(CLI::App& app, const std::string& name, const std::string& form,
-                       std::optional<glm::dvec3>& target, const std::string& description,
-                       NumberRange range = {});
-CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, const std::string& form,
-                            std::optional<int>& target, const std::string& description, NumberRange range);
-CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form,
-                     std::optional<std::string>& target, const std::string& description);
+CLI::Option* addNumber(CLI::App& app, const std::string& name, const std::string& form, std::optional<double>& target,
+                       const std::string& description, NumberRange range = {});
+CLI::Option* addPair(CLI::App& app, const std::string& name, const std::string& form, std::optional<glm::dvec2>& target,
+                     const std::string& description, NumberRange range = {});
+CLI::Option* addTriple(CLI::App& app, const std::string& name, const std::string& form, std::optional<glm::dvec3>& target,
+                       const std::string& description, NumberRange range = {});
+CLI::Option* addWholeNumber(CLI::App& app, const std::string& name, const std::string& form, std::optional<int>& target,
+                            const std::string& description, NumberRange range);
+CLI::Option* addText(CLI::App& app, const std::string& name, const std::string& form, std::optional<std::string>& target,
+                     const std::string& description);
 
 /// Resolved options as "--name" and value, for messages, metadata and timings. An empty name is a positional,
 /// an empty value a flag.

@@ -113,8 +113,8 @@ std::string commandInto(const std::string& command, OptionList options, const st
   return "freevoxels " + command + " " + commandText(options);
 }
 
-ExrOptions exrMetadata(const std::string& command, const OptionList& options,
-                       const std::map<std::string, std::string>& facts, const Camera& camera, double aspect) {
+ExrOptions exrMetadata(const std::string& command, const OptionList& options, const std::map<std::string, std::string>& facts,
+                       const Camera& camera, double aspect) {
   ExrOptions exr;
   for (const auto& [name, value] : facts) exr.metadata["freevoxels:" + name] = value;
   for (const auto& [name, value] : optionMap(options)) exr.metadata["freevoxels:" + name] = value;

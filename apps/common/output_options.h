@@ -42,8 +42,8 @@ void printNames(std::span<const std::string> files);
 /// The metadata of an EXR: "freevoxels:NAME" for every option, the command that makes it again as image.exr,
 /// versions, the device, and the camera's matrices. Contains nothing that differs between two runs of a
 /// command, nor the file's name. `command` is its name, such as "render".
-ExrOptions exrMetadata(const std::string& command, const OptionList& options,
-                       const std::map<std::string, std::string>& facts, const Camera& camera, double aspect);
+ExrOptions exrMetadata(const std::string& command, const OptionList& options, const std::map<std::string, std::string>& facts,
+                       const Camera& camera, double aspect);
 
 /// The words of a command that writes one file, for a shell: OUT stands behind IN.
 std::string commandInto(const std::string& command, OptionList options, const std::string& file);

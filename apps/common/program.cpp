@@ -251,9 +251,7 @@ void checkDistinct(const std::vector<std::string>& files) {
   std::map<std::string, std::string> known;  // what tells a file from others, and its name
   const auto note = [&](const std::string& identity, const std::string& file) {
     const auto [first, isNew] = known.emplace(identity, file);
-    if (!isNew)
-      fail(ErrorKind::Usage, "'{}' and '{}' are the same file: give every input and output its own",
-           first->second, file);
+    if (!isNew) fail(ErrorKind::Usage, "'{}' and '{}' are the same file: give every input and output its own", first->second, file);
   };
   for (const std::string& file : files) {
     std::error_code error;

@@ -29,8 +29,7 @@ void RenderOptions::add(CLI::App& app) {
   if (group == nullptr) shares.add(app);
   device.add(app);
   messages.add(app);
-  addText(app, "--timings", "FILE.json", timings, "Write options, device and the time of each stage")
-      ->group("Messages");
+  addText(app, "--timings", "FILE.json", timings, "Write options, device and the time of each stage")->group("Messages");
 }
 
 void RenderOptions::addSkipExisting(CLI::App& app) {
@@ -47,7 +46,8 @@ void RenderOptions::skipExisting(std::span<FrameJob> frames) const {
     if (usesStandardOutput(frame.files))
       fail(ErrorKind::Usage, "--skip-existing looks for images that exist, and - has no name: leave one of them out");
     std::error_code unreadable;
-    const bool exists = std::ranges::all_of(frame.files, [&](const std::string& file) { return std::filesystem::exists(file, unreadable); });
+    const bool exists =
+        std::ranges::all_of(frame.files, [&](const std::string& file) { return std::filesystem::exists(file, unreadable); });
     if (exists && !frame.isSkipped) ++existing;
     frame.isSkipped |= exists;
   }
@@ -65,8 +65,7 @@ void RenderOptions::checkShares(std::span<const FrameJob> frames) const {
   shares.check();
   if (!shares.sums) return;
   for (const FrameJob& frame : frames)
-    if (frame.files.size() != 1 || !isExr(frame.files.front()))
-      fail(ErrorKind::Usage, "--sums writes a single file: name one .exr as OUT");
+    if (frame.files.size() != 1 || !isExr(frame.files.front())) fail(ErrorKind::Usage, "--sums writes a single file: name one .exr as OUT");
   if (scene.description.output.fullFloat) fail(ErrorKind::Usage, "--float has no effect on --sums, which lose no bit: leave it out");
 }
 
@@ -112,7 +111,8 @@ void RenderOptions::run(std::vector<FrameJob> frames) const {
     if (timings) writeTimings(*timings, report);
   });
 
-  if (messages.quiet || !leads() || std::ranges::any_of(frames, [](const FrameJob& frame) { return usesStandardOutput(frame.files); })) return;
+  if (messages.quiet || !leads() || std::ranges::any_of(frames, [](const FrameJob& frame) { return usesStandardOutput(frame.files); }))
+    return;
   for (const std::optional<std::string>& file : {scene.saved, timings})
     if (file) fmt::print("{}\n", *file);
 }

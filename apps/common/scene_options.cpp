@@ -80,16 +80,19 @@ CLI::Option* SceneOptions::addField(CLI::App& app, std::string_view name, const 
   CLI::Option* option = nullptr;
   if (field.kind == Kind::Flag || field.kind == Kind::Switch) {
     const std::string names = field.kind == Kind::Flag ? "--" + field.name : fmt::format("--{0},!--no-{0}", field.name);
-    option = app.add_flag_function(names, [give](std::int64_t count) { give({count > 0 ? "true" : "false"}); }, help);
+    option = app.add_flag_function(
+        names, [give](std::int64_t count) { give({count > 0 ? "true" : "false"}); }, help);
   } else if (field.kind == Kind::Volume) {
-    option = app.add_option_function<std::string>("IN", [give](const std::string& text) { give({text}); }, help);
+    option = app.add_option_function<std::string>(
+        "IN", [give](const std::string& text) { give({text}); }, help);
   } else if (field.repeated) {
     option = app.add_option_function<std::vector<std::string>>("--" + field.name, give, help)
                  ->allow_extra_args(false)
                  ->multi_option_policy(CLI::MultiOptionPolicy::TakeAll)
                  ->type_name(field.form);
   } else {
-    option = app.add_option_function<std::string>("--" + field.name, [give](const std::string& text) { give({text}); }, help)
+    option = app.add_option_function<std::string>(
+                    "--" + field.name, [give](const std::string& text) { give({text}); }, help)
                  ->take_last()
                  ->type_name(field.form);
     if (field.standsAlone) {
@@ -204,9 +207,10 @@ void logRemarks(const SceneDescription& description, const Scene& scene) {
   logWarnings(volume, !scene.classification.transferFunction);
   logAssumptions(volume);
   if (scene.classification.transferFunction && !description.classification.transferFunction && !volume.classification)
-    spdlog::info("{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
-                 "show densities with --density-scale",
-                 volume.source);
+    spdlog::info(
+        "{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
+        "show densities with --density-scale",
+        volume.source);
   if (!description.camera.up && !description.camera.position && !volume.upReason.empty())
     spdlog::info("up is {}, as {}; change it with --up", numberText(volume.up), volume.upReason);
   if (scene.lighting && scene.lighting->environment && scene.lighting->environment->negativeValues > 0)

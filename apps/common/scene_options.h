@@ -41,7 +41,8 @@ struct SceneOptions {
 
   /// Whether --scene names a volume.
   bool sceneHasVolume() const;
-  /// Applies --scene to the fields that the command line leaves open, without those that none of `files` honours. Fails with ErrorKind::Input for errors in the file.
+  /// Applies --scene to the fields that the command line leaves open, without those that none of `files` honours. Fails with
+  /// ErrorKind::Input for errors in the file.
   void applyScene();
   /// Applies --scene. A single image argument is then OUT, if the scene has the volume. Without OUT it is the name of the volume, or
   /// else of the scene, with `defaultEnding` instead of the extension, in the current folder; if `defaultEnding` is empty, OUT is

@@ -48,8 +48,8 @@ Camera movedTo(glm::dvec2 orbit, glm::dvec3 up, Camera camera) {
 void refuseNan(const Image& image) {
   for (std::size_t i = 0; i < image.pixels.size(); ++i)
     if (const glm::vec4& pixel = image.pixels[i]; glm::any(glm::isnan(pixel)))
-      fail(ErrorKind::Input, "the image to save is no number (NaN) at row {}, column {}: replace such values first", i / std::size_t(image.size.x),
-           i % std::size_t(image.size.x));
+      fail(ErrorKind::Input, "the image to save is no number (NaN) at row {}, column {}: replace such values first",
+           i / std::size_t(image.size.x), i % std::size_t(image.size.x));
 }
 
 }  // namespace
@@ -75,7 +75,8 @@ void saveImage(const std::string& file, const Image& image, const Json& keywords
   output.aovs.depth = !image.depth.empty() && isExr(file);
   if (!image.channels.empty() && !isExr(file)) fail(ErrorKind::Usage, "{} needs an .exr output", Parameter("aov"));
   if (output.aovs.position || output.aovs.normal)
-    fail(ErrorKind::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of {}", Parameter("aov"));
+    fail(ErrorKind::Usage, "an image does not know its camera, of which positions and normals are made: leave them out of {}",
+         Parameter("aov"));
   if (usesStandardOutput(files)) fail(ErrorKind::Usage, "'-' is standard output, where the command line alone writes: name a file");
   checkOutputs(output, files);
   refuseNan(image);
@@ -101,8 +102,9 @@ class SceneRenderer::Turn {
  public:
   explicit Turn(SceneRenderer& renderer) : renderer_(renderer), lock_(renderer.context_->turns) {
     if (renderer.isDrawing_)
-      fail(ErrorKind::Usage, "a renderer cannot draw a frame in the progress function of another of its frames: use a second renderer, "
-                             "or draw it afterwards");
+      fail(ErrorKind::Usage,
+           "a renderer cannot draw a frame in the progress function of another of its frames: use a second renderer, "
+           "or draw it afterwards");
     renderer_.isDrawing_ = true;
   }
   ~Turn() { renderer_.isDrawing_ = false; }
@@ -162,10 +164,13 @@ FrameSettings SceneRenderer::prepare(const KeywordOptions& options, std::optiona
   FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
   options.scene.method.apply(settings);
   checkFrameFits(*context_->device, settings);
-  if (std::shared_ptr<const VolumeSource> source = volume_->sourceFor(options.scene, step ? step->frames : 1, progress); source != source_) {
-    renderer_ = nullptr;  // which has the volume of the source before
-    scene_.volume = known(source);
-    source_ = std::move(source);
+  if (const SharedVolume::Need need = volume_->needOf(options.scene, step ? step->frames : 1); !source_ || need != need_) {
+    renderer_ = nullptr;  // which has the volume of the source before: not both at once
+    scene_.volume = nullptr;
+    source_ = nullptr;
+    source_ = volume_->source(need, progress);
+    scene_.volume = known(source_);
+    need_ = need;
   }
   const std::string classification = textOf(options.scene, {"classification", "emission"});
   if (!renderer_ || classification != classification_) {
@@ -184,14 +189,12 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
   renderer_ = nullptr;  // so that the device never holds two
   renderer_ = std::make_unique<Renderer>(*context_->device, source_, scene_.classification, options.scene.method.table(), progress);
   rendererText_ = text;
-  buildStages_ = renderer_->timings().size();
   isRendererNew_ = true;
 }
 
 void SceneRenderer::complete(glm::ivec2 size) {
   context_->checkValidation();
-  std::vector<StageTime> times = renderer_->timings();
-  if (!std::exchange(isRendererNew_, false)) times.erase(times.begin(), times.begin() + std::ptrdiff_t(buildStages_));
+  std::vector<StageTime> times = std::exchange(isRendererNew_, false) ? renderer_->timings() : renderer_->frameTimings();
   CameraDescription camera;
   camera.look(scene_.camera);
   camera.size = size;
@@ -214,7 +217,8 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
   return drawn;
 }
 
-Image SceneRenderer::drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels, const Progress& progress) {
+Image SceneRenderer::drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels,
+                               const Progress& progress) {
   const auto work = [&](Renderer& renderer, const Camera& camera, const FrameSettings& settings, const Progress& report) {
     Image image = renderer.render(camera, settings, report);
     addChannels(image, channels, camera);

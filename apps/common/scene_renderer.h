@@ -59,7 +59,8 @@ class SceneRenderer {
   /// The same frame, which stays on the device, complete.
   std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
 
-  /// Times of the stages that the last complete frame ran, those of data that it made included. Does not wait for a frame that is being drawn.
+  /// Times of the stages that the last complete frame ran, those of data that it made included. Does not wait for a frame that is being
+  /// drawn.
   std::vector<StageTime> timings() const;
   /// The camera of the last complete frame, as keywords that give it; an empty object before.
   nlohmann::json camera() const;
@@ -84,13 +85,13 @@ class SceneRenderer {
 
   // While context_->turns is held:
   bool isDrawing_ = false;
-  std::shared_ptr<const VolumeSource> source_;  ///< of the last frame
-  Scene scene_;                 ///< of the last frame, with what is known of the volume
-  std::string classification_;  ///< the fields of which scene_.classification was made
-  std::string rendererText_;    ///< rendererText for which renderer_ was made
+  SharedVolume::Need need_;
+  std::shared_ptr<const VolumeSource> source_;  ///< of the last frame, what it needed
+  Scene scene_;                                 ///< of the last frame, with what is known of the volume
+  std::string classification_;                  ///< the fields of which scene_.classification was made
+  std::string rendererText_;                    ///< rendererText for which renderer_ was made
   std::unique_ptr<Renderer> renderer_;
-  std::size_t buildStages_ = 0;    ///< how many of renderer_'s timings are of its making
-  bool isRendererNew_ = false;     ///< whether it was made for the frame that is being drawn
+  bool isRendererNew_ = false;  ///< whether it was made for the frame that is being drawn
 
   mutable std::mutex lastFrameMutex_;  ///< guards the members below, of the last complete frame
   std::vector<StageTime> timings_;

@@ -87,9 +87,7 @@ FrameRange readFrameRange(const std::string& option, const std::string& text) {
 
 Sequence findSequence(const std::string& pattern) {
   Sequence sequence = filesOf(withHashes(pattern));
-  if (sequence.files.empty())
-    fail(ErrorKind::Input, "there is no frame of '{}': its # stand for the digits of a file's number",
-         pattern);
+  if (sequence.files.empty()) fail(ErrorKind::Input, "there is no frame of '{}': its # stand for the digits of a file's number", pattern);
   return sequence;
 }
 

@@ -11,8 +11,8 @@
 namespace freevoxels {
 
 struct Sequence {
-  std::string pattern;             ///< "smoke_####.vdb", as for frameName
-  std::vector<std::string> files;  ///< that exist, in the order of their numbers
+  std::string pattern;               ///< "smoke_####.vdb", as for frameName
+  std::vector<std::string> files;    ///< that exist, in the order of their numbers
   std::vector<FrameNumber> numbers;  ///< of each file
 };
 

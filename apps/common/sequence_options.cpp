@@ -25,8 +25,7 @@ struct NumberedVolume {
 /// Whether a word behind IN is another volume. What is neither a volume nor an image is left to be refused as an image.
 bool isVolume(const std::string& word) {
   std::error_code unreadable;
-  return !isImage(word) &&
-         (proceduralName(word) || word.ends_with(".vdb") || isPattern(word) || fs::is_regular_file(word, unreadable));
+  return !isImage(word) && (proceduralName(word) || word.ends_with(".vdb") || isPattern(word) || fs::is_regular_file(word, unreadable));
 }
 
 /// Takes the volumes out of OUT.
@@ -49,8 +48,7 @@ std::vector<NumberedVolume> framesOf(const std::string& pattern, const std::opti
     range = readFrameRange("--frames", *frames);
     sequence = selectFrames(sequence, *range);
   }
-  if (const std::string gaps = gapsOf(sequence, range); !gaps.empty())
-    spdlog::warn("'{}' has no file of frame {}", pattern, gaps);
+  if (const std::string gaps = gapsOf(sequence, range); !gaps.empty()) spdlog::warn("'{}' has no file of frame {}", pattern, gaps);
   std::vector<NumberedVolume> volumes;
   const NumberPlace place = placeOfNumber(sequence.pattern);
   for (std::size_t i = 0; i < sequence.files.size(); ++i) {
@@ -79,8 +77,7 @@ std::vector<std::string> extensionsOf(const std::string& formats) {
 void SequenceOptions::add(CLI::App& app, std::optional<bool>& fixedView) {
   constexpr const char* kGroup = "Sequence";
   addText(app, "--frames", "A-B:STEP", frames, "Numbers of the frames of IN with a run of #; A-B, A- and A will do [all]")->group(kGroup);
-  addText(app, "--out-dir", "FOLDER", folder, "Where images go whose names have no folder; it is made where it is missing")
-      ->group(kGroup);
+  addText(app, "--out-dir", "FOLDER", folder, "Where images go whose names have no folder; it is made where it is missing")->group(kGroup);
   addText(app, "--format", "LIST", formats, "Of images that have the names of their volumes: exr, png, jpg, with commas between them [png]")
       ->group(kGroup);
   app.add_flag_function(

@@ -1,5 +1,5 @@
 #pragma once
-// The processes that draw the frames of one run together: each draws shares of the volume's blocks (engine/splatting/shares.h), and their
+// The processes that draw the frames of one run together: each draws shares of it (engine/splatting/shares.h), and their
 // fixed-point sums are added up. Implemented by apps/mpi; a run without a group is drawn by one process alone.
 
 #include <cstddef>

@@ -33,15 +33,15 @@ std::string sharePartText(const SharePart& part) {
 void ShareOptions::add(CLI::App& app) {
   app.add_option_function<std::string>(
          "--share", [this](const std::string& text) { part = readSharePart("--share", text); },
-         "Draw part I of N of the volume's blocks alone; the parts I = 0 to N - 1 are the whole, by splats and with the same bits for "
-         "every N")
+         "Draw part I of N alone: some rows of the image, or with --draw splats some of the volume's blocks; the parts I = 0 to N - 1 are "
+         "the "
+         "whole, with the same bits for every N")
       ->take_last()
       ->type_name("I/N")
       ->group(kGroup);
   app.add_flag("--sums", sums, "Write the sums of the part, an .exr that 'freevoxels merge' adds up with the others, instead of an image")
       ->group(kGroup);
-  addWholeNumber(app, "--color-parts", "N", coloredParts,
-                 "Show how N processes divide the volume: give every voxel the colour of the part I of N that draws it",
+  addWholeNumber(app, "--color-parts", "N", coloredParts, "Show how N processes divide a frame: give what each draws a colour of its own",
                  {1.0, double(kShares)})
       ->group(kGroup);
 }
@@ -58,7 +58,6 @@ void checkRanks(int ranks) {
 FrameSettings sharedSettings(FrameSettings settings) {
   if (settings.composite == Composite::Sorted)
     fail(ErrorKind::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");
-  settings.cullThreshold = 0.0f;
   return settings;
 }
 

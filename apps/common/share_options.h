@@ -1,12 +1,12 @@
 #pragma once
-// Which part of the volume a command draws, and whether it writes the part's sums for `freevoxels merge`.
+// Which part of a frame a command draws, and whether it writes the part's sums for `freevoxels merge`.
 
 #include <optional>
 #include <string>
 
 #include "apps/common/option_values.h"
-#include "engine/splatting/shares.h"
 #include "engine/scene/render_settings.h"
+#include "engine/splatting/shares.h"
 
 namespace freevoxels {
 
@@ -31,8 +31,7 @@ std::string sharePartText(const SharePart& part);
 /// Fails with ErrorKind::Usage where there are more processes than shares.
 void checkRanks(int ranks);
 
-/// Settings of a frame that is drawn share by share: nothing is left out as hidden, which other shares' sums would have to tell. Fails
-/// with ErrorKind::Usage where a method was asked for that cannot be divided.
+/// Settings of a frame that is drawn share by share. Fails with ErrorKind::Usage where a method was asked for that cannot be divided.
 FrameSettings sharedSettings(FrameSettings settings);
 
 }  // namespace freevoxels

@@ -8,22 +8,24 @@
 namespace freevoxels {
 
 SharedVolume::SharedVolume(Volume volume)
-    : description_(std::make_shared<const Volume>(std::move(volume))), source_(std::make_shared<const VolumeInMemory>(description_)) {}
+    : description_(std::make_shared<const Volume>(std::move(volume))), inMemory_(std::make_shared<const VolumeInMemory>(description_)) {}
 
 SharedVolume::SharedVolume(std::shared_ptr<const fvx::FvxFile> file)
     : file_(std::move(file)), description_(std::make_shared<const Volume>(bakedOutline(*file_))) {}
 
-std::shared_ptr<const VolumeSource> SharedVolume::sourceFor(const SceneDescription& scene, int frames, const Progress& progress) const {
+SharedVolume::Need SharedVolume::needOf(const SceneDescription& scene, int frames) const {
+  if (!file_) return {};
+  return {.level = scene.finestLevelNeeded(file_.get(), frames), .isRead = !scene.isSeenAsBaked(*file_)};
+}
+
+std::shared_ptr<const VolumeSource> SharedVolume::source(const Need& need, const Progress& progress) const {
+  if (file_ && !need.isRead) return bakedSource(file_, need.level, false);
   const std::lock_guard lock(mutex_);
-  if (!file_) return source_;
-  const int level = scene.finestLevelNeeded(file_.get(), frames);
-  const bool isRead = !scene.isSeenAsBaked(*file_);
-  if (source_ && level == level_ && isRead == isRead_) return source_;
-  source_ = nullptr;  // not both at once
-  source_ = bakedSource(file_, level, isRead, progress);
-  level_ = level;
-  isRead_ = isRead;
-  return source_;
+  if (inMemory_ && (!file_ || need.level == level_)) return inMemory_;
+  inMemory_ = nullptr;  // not both at once
+  inMemory_ = bakedSource(file_, need.level, true, progress);
+  level_ = need.level;
+  return inMemory_;
 }
 
 }  // namespace freevoxels

@@ -9,7 +9,7 @@
 namespace freevoxels {
 
 /// A volume in memory; or a baked file, whose levels are read by the renderers that draw them, or, where a scene classifies them
-/// otherwise, here, and kept until a renderer needs another level. Any thread may call the member functions.
+/// otherwise, here, where the last one is kept for all renderers. Any thread may call the member functions.
 class SharedVolume {
  public:
   explicit SharedVolume(Volume volume);
@@ -17,17 +17,24 @@ class SharedVolume {
 
   /// The volume; of a file its finest level, without the values.
   const Volume& describe() const { return *description_; }
-  /// What a frame of the scene, or the frames of a turn, are drawn of, as on the command line: the same object as long as that is the same.
+
+  /// What a frame needs of a baked file.
+  struct Need {
+    int level = 0;
+    bool isRead = false;  ///< whether its values are needed before it is drawn
+    bool operator==(const Need&) const = default;
+  };
+  /// Of a frame of the scene, or of the frames of a turn, as on the command line.
+  Need needOf(const SceneDescription& scene, int frames) const;
   /// `progress` may abandon it. Fails as readBaked does.
-  std::shared_ptr<const VolumeSource> sourceFor(const SceneDescription& scene, int frames, const Progress& progress) const;
+  std::shared_ptr<const VolumeSource> source(const Need& need, const Progress& progress) const;
 
  private:
   const std::shared_ptr<const fvx::FvxFile> file_;  ///< null where the volume is of no baked file
   const std::shared_ptr<const Volume> description_;
   mutable std::mutex mutex_;  ///< guards the members below
-  mutable std::shared_ptr<const VolumeSource> source_;
-  mutable int level_ = 0;      ///< of `source_`
-  mutable bool isRead_ = false;  ///< whether `source_` is in memory
+  mutable std::shared_ptr<const VolumeSource> inMemory_;
+  mutable int level_ = 0;  ///< of `inMemory_`
 };
 
 }  // namespace freevoxels

@@ -17,8 +17,7 @@ std::vector<std::string> TextTable::lines() const {
     std::string line;
     for (std::size_t i = 0; i < columns.size(); ++i) {
       if (i > 0) line += "  ";
-      line += columns[i] == Align::Left ? fmt::format("{:<{}}", row[i], widths[i])
-                                        : fmt::format("{:>{}}", row[i], widths[i]);
+      line += columns[i] == Align::Left ? fmt::format("{:<{}}", row[i], widths[i]) : fmt::format("{:>{}}", row[i], widths[i]);
     }
     line.erase(line.find_last_not_of(' ') + 1);
     result.push_back(std::move(line));

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "apps/common/option_values.h"
-#include "engine/description/scene_description.h"
 #include "engine/core/stages.h"
+#include "engine/description/scene_description.h"
 #include "engine/renderer.h"
 #include "engine/visibility/cut_pass.h"
 #include "engine/vulkan/device.h"
@@ -16,14 +16,14 @@
 namespace freevoxels {
 
 struct RunReport {
-  SceneDescription scene;  ///< as it was resolved for the first volume
-  OptionList options;      ///< the same, as far as the command has them
+  SceneDescription scene;   ///< as it was resolved for the first volume
+  OptionList options;       ///< the same, as far as the command has them
   std::string contentHash;  ///< content_hash.h, of a run that draws shares
   DeviceDescription device;
   std::vector<StageTime> stages;
   double totalMilliseconds = 0.0;
   std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
-  std::uint64_t voxels = 0;  ///< number of voxels of the volume's box
+  std::uint64_t voxels = 0;                    ///< number of voxels of the volume's box
   VolumeMemory memory;
   std::uint64_t devicePeak = 0;    ///< largest number of bytes allocated on the device at any time
   CutCounts cut;                   ///< cut of the last frame

@@ -26,7 +26,9 @@ class WholeFraction {
 /// A progress function that passes such fractions on. An empty function stays empty.
 inline Progress wholeProgress(const Progress& progress) {
   if (!progress) return {};
-  return [progress, fraction = std::make_shared<WholeFraction>()](std::string_view stage, double ofPart) { progress(stage, fraction->next(ofPart)); };
+  return [progress, fraction = std::make_shared<WholeFraction>()](std::string_view stage, double ofPart) {
+    progress(stage, fraction->next(ofPart));
+  };
 }
 
 }  // namespace freevoxels

@@ -29,7 +29,8 @@ std::string kindName(SectionKind kind) {
     case SectionKind::Provenance: return "provenance";
     case SectionKind::ChunkIndex: return "chunk index";
     case SectionKind::Chunks: return "chunks";
-    case SectionKind::ContentCells: return "content cells";
+    case SectionKind::ContentCells:
+      return "content cells";
   }
   return fmt::format("unknown {}", std::uint32_t(kind));
 }

@@ -76,7 +76,7 @@ class MergeCommand {
   void run() const;
 
   std::vector<std::string> files_;  ///< parts, then images to write
-  SceneOptions scene_;  ///< the form of the images
+  SceneOptions scene_;              ///< the form of the images
   MessageOptions messages_;
 };
 

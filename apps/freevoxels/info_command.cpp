@@ -7,8 +7,8 @@
 #include <limits>
 #include <nlohmann/json.hpp>
 
-#include "apps/freevoxels/baked_info.h"
 #include "apps/common/text_table.h"
+#include "apps/freevoxels/baked_info.h"
 #include "engine/core/error.h"
 #include "engine/renderer.h"
 #include "engine/volume/occupied_count.h"

@@ -111,7 +111,7 @@ void Merge::add(const std::string& file) {
 
 void Merge::checkComplete() const {
   const auto isMissing = [&](const SharePart& part) {
-    for (int share = part.index; share < kShares; share += part.count)
+    for (int share = part.first(); share < part.end(); ++share)
       if (!fileOfShare_[std::size_t(share)].empty()) return false;
     return true;
   };

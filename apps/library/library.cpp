@@ -5,11 +5,11 @@
 
 #include <cmath>
 
-#include "apps/common/program.h"
 #include "apps/common/frame_queue.h"
+#include "apps/common/program.h"
+#include "apps/common/scene_renderer.h"
 #include "apps/library/include/freevoxels/freevoxels.h"
 #include "apps/library/include/freevoxels/vulkan.h"
-#include "apps/common/scene_renderer.h"
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
 #include "engine/core/printable.h"

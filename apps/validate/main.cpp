@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "apps/common/device_options.h"
-#include "engine/description/scene_description.h"
 #include "apps/common/program.h"
 #include "apps/common/progress_line.h"
 #include "apps/validate/check_lines.h"
 #include "apps/validate/section_jobs.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_description.h"
 
 namespace {
 

@@ -11,12 +11,12 @@
 #include <ctime>
 #include <set>
 
-#include "engine/description/scene_description.h"
 #include "apps/common/sequence.h"
 #include "apps/view/keys.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_description.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {

@@ -31,10 +31,7 @@ const char* nameOf(Purpose purpose) {
 }  // namespace
 
 ImageDirector::ImageDirector(const Device& device, bool wholeOnly)
-    : volumes_(kMaxNumberedVoxels),
-      quick_(device, volumes_, Window::wake),
-      whole_(device, volumes_, Window::wake),
-      wholeOnly_(wholeOnly) {}
+    : volumes_(kMaxNumberedVoxels), quick_(device, volumes_, Window::wake), whole_(device, volumes_, Window::wake), wholeOnly_(wholeOnly) {}
 
 ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int voxels, double scale) const {
   ImageRequest request{.scene = state.scene,

@@ -11,9 +11,9 @@
 #include <nlohmann/json.hpp>
 
 #include "apps/common/failure.h"
-#include "engine/description/scene_description.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/json_file.h"
+#include "engine/description/scene_description.h"
 
 namespace freevoxels {
 

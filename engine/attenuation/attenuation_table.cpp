@@ -71,8 +71,7 @@ AttenuationTable makeTable(const Device& device, const DeviceVolume& volume, con
                               VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     table.planeTexels.emplace_back(device, table.planes.back(), VK_FORMAT_R8_UINT);
   }
-  table.planeAddresses = Buffer(device, std::size_t(cellCount(set)) * sizeof(VkDeviceAddress),
-                                MemoryUse::Device, "attenuation addresses");
+  table.planeAddresses = Buffer(device, std::size_t(cellCount(set)) * sizeof(VkDeviceAddress), MemoryUse::Device, "attenuation addresses");
   std::vector<VkDeviceAddress> addresses(std::size_t(cellCount(set)), 0);
   for (int i = 0; i < directionCount(set); ++i)
     addresses[std::size_t(cellNumber(set, directionCell(set, i)))] = table.planes[std::size_t(i)].address();
@@ -96,11 +95,10 @@ AttenuationSweep::AttenuationSweep(const Device& device, const TableSettings& se
   const auto code = std::uint32_t(settings.code);
   for (int step = -1; step <= 1; ++step)
     bundles_[std::size_t(step + 1)] =
-        makeComputePipeline(device, shaders::attenuation_sweep,
-                          {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step)});
+        makeComputePipeline(device, shaders::attenuation_sweep, {code, std::uint32_t(style.voxelsPerThread), std::uint32_t(step)});
   for (int step : {-1, 1})
-    rows_[step > 0 ? 1 : 0] = makeComputePipeline(device, shaders::attenuation_sweep_x,
-                                                  {code, std::uint32_t(step), std::uint32_t(style.tiledRows)});
+    rows_[step > 0 ? 1 : 0] =
+        makeComputePipeline(device, shaders::attenuation_sweep_x, {code, std::uint32_t(step), std::uint32_t(style.tiledRows)});
   if (settings.directions == DirectionSet::Directions98)
     halves_.emplace(device, settings.code, style.voxelsPerThread);
 }
@@ -110,8 +108,7 @@ void AttenuationSweep::makeRoom(const SweepPlan& plan) {
   if (extinction_.bytes() != plan.slabBytes) {
     extinctionQuads_ = {};
     extinction_ = {};  // free the old buffer before allocating the new one
-    extinction_ = Buffer(device_, plan.slabBytes, MemoryUse::Device, "extinction of a slab",
-                         VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    extinction_ = Buffer(device_, plan.slabBytes, MemoryUse::Device, "extinction of a slab", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     extinctionQuads_ = TexelView(device_, extinction_);
   }
   const std::uint64_t keptBytes = std::max<std::uint64_t>(plan.keptBytes, sizeof(float));
@@ -165,9 +162,8 @@ void AttenuationSweep::recordBundles(SlabSweep& sweep, glm::ivec2 yz) const {
     shader::SweepPush push = sweepPush(sweep, {x, yz});
     const std::uint64_t threads =
         std::uint64_t(push.lineCount) * std::uint64_t(push.rowPitch / style_.voxelsPerThread);
-    push.slab = yz.y != 0
-                    ? sweep.marchAlongZ(threads * std::uint64_t(linesPerThread(style_.voxelsPerThread, x)))
-                    : sweep.marchWithinPlanes(push.marchCount);
+    push.slab = yz.y != 0 ? sweep.marchAlongZ(threads * std::uint64_t(linesPerThread(style_.voxelsPerThread, x)))
+                          : sweep.marchWithinPlanes(push.marchCount);
     sweep.commands.dispatchLinear(bundles_[std::size_t(1 - x)], sweep.bindings(planeOf(sweep.table, {x, yz})),
                                   push, threads);
   }

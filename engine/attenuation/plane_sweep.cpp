@@ -286,7 +286,8 @@ SweptLight::SweptLight(const Device& device, const SourceLevel& level, const Ray
   const VoxelValues values(level);
   const std::array<FaceRays, 6> fans = faceRays(level.outline().dimensions, source);
   for (int i = 0; i < 6; ++i)
-    if (fans[std::size_t(i)].planeCount > 0) Sweep(*this, device, level, values, fans[std::size_t(i)], i).run(level.outline().indexToWorld, times, progress);
+    if (fans[std::size_t(i)].planeCount > 0)
+      Sweep(*this, device, level, values, fans[std::size_t(i)], i).run(level.outline().indexToWorld, times, progress);
 } catch (const std::system_error& error) {
   failTemporary(error);
 }

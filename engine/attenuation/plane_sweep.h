@@ -1,7 +1,7 @@
 #pragma once
 // Optical depths towards a light at all voxels of a level that need not fit into the device's memory: the sweep of ray_sweep.h, plane by
-// plane from the volume's source. Only some planes are in memory at a time; the depths of voxels go to a temporary file, from which those of any brick
-// can be read.
+// plane from the volume's source. Only some planes are in memory at a time; the depths of voxels go to a temporary file, from which those
+// of any brick can be read.
 
 #include <array>
 #include <cstdint>

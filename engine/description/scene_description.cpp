@@ -112,9 +112,11 @@ Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, cons
                     progress);
 }
 
-std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount, bool mayStayFile, bool isFrame, const Progress& progress) const {
+std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount, bool mayStayFile, bool isFrame,
+                                                                 const Progress& progress) const {
   const std::shared_ptr<const fvx::FvxFile> file = input.baked();
-  if (!file) return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(readVolume(kMaxNumberedVoxels, 0, progress, isFrame)));
+  if (!file)
+    return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(readVolume(kMaxNumberedVoxels, 0, progress, isFrame)));
   return bakedSource(file, finestLevelNeeded(file.get(), frameCount), !mayStayFile || !isSeenAsBaked(*file), progress);
 }
 

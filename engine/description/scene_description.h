@@ -247,7 +247,8 @@ struct SceneDescription {
   Volume readVolume(std::uint64_t maximumVoxels, int level = 0, const Progress& progress = {}, bool isFrame = false) const;
   /// What frames are drawn of. A baked file is read by whoever draws it, where `mayStayFile` allows that and isSeenAsBaked(); other volumes
   /// are read, with boxes of at most kMaxNumberedVoxels. A frame of a film may lack grids. Fails as readVolume().
-  std::shared_ptr<const VolumeSource> openSource(int frameCount, bool mayStayFile = true, bool isFrame = false, const Progress& progress = {}) const;
+  std::shared_ptr<const VolumeSource> openSource(int frameCount, bool mayStayFile = true, bool isFrame = false,
+                                                 const Progress& progress = {}) const;
   /// Whether what is seen of a baked volume is known without its values, as it is classified as it was when it was baked.
   bool isSeenAsBaked(const fvx::FvxFile& file) const;
   /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 where the levels are of

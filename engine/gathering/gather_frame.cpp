@@ -157,6 +157,7 @@ void setSeen(shader::GatherFrame& frame, const SeenRectangle& seen) {
   frame.firstSeen = glm::ivec2(glm::clamp(glm::floor(low) - kMargin, glm::dvec2(0.0), lastSample)) & ~1;
   frame.seenExtent =
       ((glm::ivec2(glm::clamp(glm::ceil(high) + kMargin, glm::dvec2(frame.firstSeen), lastSample)) + 1) & ~1) - frame.firstSeen + 1;
+  frame.ownCells = {0, (frame.seenExtent.y + 1) / 2};
   const auto pixelAt = [&](glm::dvec2 sample) { return (sample - double(shader::kLatticeMargin)) * pitch; };
   frame.firstPixel = glm::ivec2(glm::clamp(glm::floor(pixelAt(low - kPixelMargin)) - 1.0, glm::dvec2(0.0), lastPixel));
   frame.pixelExtent =

@@ -8,23 +8,17 @@
 #include "embedded/gather_list.h"
 #include "embedded/gather_list_offsets.h"
 #include "embedded/gather_post_lit.h"
-#include "embedded/gather_post_lit_parts.h"
-#include "embedded/gather_post_lit_region.h"
+#include "embedded/gather_post_lit_cube.h"
 #include "embedded/gather_post_surfaces.h"
-#include "embedded/gather_post_surfaces_parts.h"
-#include "embedded/gather_post_surfaces_region.h"
+#include "embedded/gather_post_surfaces_cube.h"
 #include "embedded/gather_post_unlit.h"
-#include "embedded/gather_post_unlit_parts.h"
-#include "embedded/gather_post_unlit_region.h"
+#include "embedded/gather_post_unlit_cube.h"
 #include "embedded/gather_pre_lit.h"
-#include "embedded/gather_pre_lit_parts.h"
-#include "embedded/gather_pre_lit_region.h"
+#include "embedded/gather_pre_lit_cube.h"
 #include "embedded/gather_pre_surfaces.h"
-#include "embedded/gather_pre_surfaces_parts.h"
-#include "embedded/gather_pre_surfaces_region.h"
+#include "embedded/gather_pre_surfaces_cube.h"
 #include "embedded/gather_pre_unlit.h"
-#include "embedded/gather_pre_unlit_parts.h"
-#include "embedded/gather_pre_unlit_region.h"
+#include "embedded/gather_pre_unlit_cube.h"
 #include "embedded/gather_refine.h"
 #include "embedded/gather_resample.h"
 #include "embedded/gather_roughness.h"
@@ -36,19 +30,19 @@ namespace freevoxels {
 
 namespace {
 
-/// The shaders for the whole volume, for a part and for a region.
-const std::array<const Shader*, 3>& gatherShaders(const GatherVolume& volume) {
+/// The shader for the whole volume, or for a cube of it.
+const Shader& gatherShader(const GatherVolume& volume, bool cube) {
   using namespace shaders;
-  static constexpr std::array<std::array<std::array<const Shader*, 3>, 3>, 2> kShaders{{
-      {{{&gather_pre_unlit, &gather_pre_unlit_parts, &gather_pre_unlit_region},
-        {&gather_pre_lit, &gather_pre_lit_parts, &gather_pre_lit_region},
-        {&gather_pre_surfaces, &gather_pre_surfaces_parts, &gather_pre_surfaces_region}}},
-      {{{&gather_post_unlit, &gather_post_unlit_parts, &gather_post_unlit_region},
-        {&gather_post_lit, &gather_post_lit_parts, &gather_post_lit_region},
-        {&gather_post_surfaces, &gather_post_surfaces_parts, &gather_post_surfaces_region}}},
+  static constexpr std::array<std::array<std::array<const Shader*, 2>, 3>, 2> kShaders{{
+      {{{&gather_pre_unlit, &gather_pre_unlit_cube},
+        {&gather_pre_lit, &gather_pre_lit_cube},
+        {&gather_pre_surfaces, &gather_pre_surfaces_cube}}},
+      {{{&gather_post_unlit, &gather_post_unlit_cube},
+        {&gather_post_lit, &gather_post_lit_cube},
+        {&gather_post_surfaces, &gather_post_surfaces_cube}}},
   }};
   const bool sampled = volume.sampleLights() > 0 || volume.ambientChannels() > 0;
-  return kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : sampled ? 1 : 0];
+  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : sampled ? 1 : 0][cube ? 1 : 0];
 }
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, const Shader& shader) {
@@ -70,10 +64,9 @@ GatherPass::GatherPass(const Device& device)
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       noDistance_(device, glm::ivec2(1), kTargetScalarFormat, "no distance") {}
 
-void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels,
-                              Extent marched) {
+void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, *gatherShaders(volume)[std::size_t(marched)]);
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, gatherShader(volume, false));
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
@@ -100,21 +93,21 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   commands.update(frame_, frame);
 }
 
-void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
-                                 const TexelView& skips, glm::ivec2 extent, Extent marched, const shader::SamplesPush& samples) {
-  const Shader& shader = *gatherShaders(volume)[std::size_t(marched)];
+void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent,
+                                 bool cube, const shader::SamplesPush& samples) {
+  const Shader& shader = gatherShader(volume, cube);
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const GatherVolume::Quads& quads = volume.quads(axis);
     std::vector<Binding> bindings{&frame_,
-                                  &numbers,
+                                  &volume.brickNumbers(),
                                   &quads.medium.texels,
                                   &quads.source.texels,
                                   &quads.extra.texels,
                                   &gathered_.colorEnergyTexels,
                                   &gathered_.distanceTexels,
                                   &volume.transferTable(),
-                                  &skips};
+                                  &volume.skips()};
     for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
     bindings.emplace_back(&volume.gradients());
     const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, shader);
@@ -135,7 +128,7 @@ void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, c
   if (frame.sampleTolerance > 0.0f)
     recordAdaptive(commands, volume, frame);
   else
-    dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.seenExtent, Extent::Whole);
+    dispatchSamples(commands, volume, frame, frame.seenExtent, false);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -156,7 +149,7 @@ void GatherPass::makeAdaptiveRoom(std::uint64_t coarse, std::uint64_t groups) {
 void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
   const glm::ivec2 coarse = (frame.seenExtent + 1) / 2, groups = (coarse + shader::kGatherTile - 1) / shader::kGatherTile;
   makeAdaptiveRoom(std::uint64_t(coarse.x) * std::uint64_t(coarse.y), std::uint64_t(groups.x) * std::uint64_t(groups.y));
-  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), coarse, Extent::Whole, {.step = 2});
+  dispatchSamples(commands, volume, frame, coarse, false, {.step = 2});
   commands.barrier(kComputeStage, kComputeStage);
 
   // Passes of their own: what a workgroup of them takes is not what one of the march takes.
@@ -173,7 +166,7 @@ void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, 
   const shader::SamplesPush listed = recordList(commands, coarse, groups);
   commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
   commands.beginPass("gather rough rays");
-  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), glm::ivec2(0), Extent::Whole, listed);
+  dispatchSamples(commands, volume, frame, glm::ivec2(0), false, listed);
 }
 
 /// Lists the samples that the workgroups have counted, and returns how the list is marched.
@@ -204,21 +197,13 @@ void GatherPass::recordListed(Commands& commands, const GatherVolume& volume, co
   adaptive_.list = Buffer(device_, sizeof(head) + places.size_bytes(), MemoryUse::Upload, "listed samples", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   std::memcpy(adaptive_.list.mapped(), &head, sizeof(head));
   std::memcpy(adaptive_.list.mapped() + sizeof(head), places.data(), places.size_bytes());
-  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), glm::ivec2(0), Extent::Whole,
+  dispatchSamples(commands, volume, frame, glm::ivec2(0), false,
                   {.list = addressWords(adaptive_.list.address()), .step = 0, .groupsOfARow = 1, .rowsOfARange = int(head.ranges[0].y)});
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-void GatherPass::recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
-                            const TexelView& skips) {
-  setLattice(frame);
-  makeRoom(gathered_, 1);  // a binding needs a buffer
-  commands.beginPass("gather");
-  commands.update(frame_, frame);
-  dispatchSamples(commands, volume, frame, numbers, skips, frame.seenExtent, Extent::Part);
-}
-
 void GatherPass::recordClear(Commands& commands, const shader::GatherFrame& frame) {
+  setLattice(frame);
   makeRoom(gathered_, latticeSize(frame));
   recordClear(commands);
 }
@@ -229,10 +214,10 @@ void GatherPass::recordClear(Commands& commands) {
   commands.clear(gathered_.distances);
 }
 
-void GatherPass::recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
+void GatherPass::recordCube(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
   commands.beginPass("gather");
   begin(commands, frame);
-  dispatchSamples(commands, volume, frame, volume.brickNumbers(), volume.skips(), frame.region.extent, Extent::Region);
+  dispatchSamples(commands, volume, frame, frame.cube.extent, true);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -292,16 +277,17 @@ void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& fra
 }
 
 std::vector<GatherSums> GatherPass::download(const Sums& sums) const {
-  const std::size_t count = std::size_t(lattice_.samples.x) * std::size_t(lattice_.samples.y);
+  const auto width = std::size_t(lattice_.samples.x), first = width * std::size_t(seen_.first.y),
+             count = width * std::size_t(seen_.extent.y);
   std::vector<glm::vec4> colorEnergy(count);
   std::vector<float> distances(count);
-  freevoxels::download(device_, sums.colorEnergy, std::as_writable_bytes(std::span(colorEnergy)));
-  freevoxels::download(device_, sums.distances, std::as_writable_bytes(std::span(distances)));
-  std::vector<GatherSums> result(count);
-  for (int y = seen_.first.y; y < seen_.first.y + seen_.extent.y; ++y)
+  freevoxels::download(device_, sums.colorEnergy, std::as_writable_bytes(std::span(colorEnergy)), first * sizeof(glm::vec4));
+  freevoxels::download(device_, sums.distances, std::as_writable_bytes(std::span(distances)), first * sizeof(float));
+  std::vector<GatherSums> result(width * std::size_t(lattice_.samples.y));
+  for (int y = 0; y < seen_.extent.y; ++y)
     for (int x = seen_.first.x; x < seen_.first.x + seen_.extent.x; ++x) {
-      const std::size_t i = std::size_t(x) + std::size_t(y) * std::size_t(lattice_.samples.x);
-      result[i] = {.color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])};
+      const std::size_t i = std::size_t(x) + std::size_t(y) * width;
+      result[first + i] = {.color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])};
     }
   return result;
 }

@@ -19,10 +19,9 @@ namespace freevoxels {
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
-  enum class Extent { Whole, Part, Region };  ///< what of the volume is marched
   /// Has the pipelines that march rays along the given axes compiled. The volume is prepared for the frame. `levels` says whether the frame
   /// has levels of detail above voxels.
-  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, Extent marched);
+  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels);
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const FrameTargets& targets);
 
@@ -33,15 +32,12 @@ class GatherPass {
   /// Instead of all samples, marches those at these places of the lattice (x + y times its width), in this order; for tests.
   void recordListed(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, std::span<const std::uint32_t> places);
   void recordStencil(Commands& commands, const shader::GatherFrame& frame);
-  /// The sums of the bricks of a part, in fixed point, instead of those of all samples. `frame.part` is filled in.
-  void recordPart(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
-                  const TexelView& skips);
-  /// The sums of a volume that is on the device region by region: first recordClear, then recordRegion for one after the other, in the order
-  /// in which rays meet them, and with `frame.region.isLast` for the last one. `frame.region` is filled in. Then recordImage.
+  /// The sums of a volume that is on the device cube by cube: first recordClear, then recordCube for one after the other, in the order
+  /// in which rays meet them, and with `frame.cube.isLast` for the last one. `frame.cube` is filled in. Then recordImage.
   void recordClear(Commands& commands, const shader::GatherFrame& frame);
   /// Sets what there is of an earlier frame's sums to 0, so that validation notices samples that are left out.
   void recordClear(Commands& commands);
-  void recordRegion(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
+  void recordCube(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
   void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   void recordResampling(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
@@ -68,8 +64,8 @@ class GatherPass {
   shader::SamplesPush recordList(Commands& commands, glm::ivec2 coarse, glm::ivec2 groups);
   void makeRoom(Sums& sums, std::uint64_t samples);
   /// `extent` is that of the samples that are dispatched, unless they are listed.
-  void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const TexelView& numbers,
-                       const TexelView& skips, glm::ivec2 extent, Extent marched, const shader::SamplesPush& samples = {.step = 1});
+  void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent, bool cube,
+                       const shader::SamplesPush& samples = {.step = 1});
   void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   std::vector<GatherSums> download(const Sums& sums) const;
   std::vector<Binding> sumBindings(const Sums& from, const Sums& to) const;

@@ -47,30 +47,16 @@ glm::dvec4 resolved(const FixedSums& sums, std::size_t i, bool normalised) {
   return {color * (energy > 0.0 ? alpha / energy : 1.0), alpha};
 }
 
-/// Where the interpolated depth in front of an opaque edge hides what a sample shows, its sums are nearly 0: below this part of alpha its
-/// colour is that of the samples around it.
-constexpr double kMinEnergy = 0.01;
-
 Image resolveSamples(const FixedSums& sums) {
   const SampleLattice& lattice = *sums.lattice;
   FV_CHECK_EQ(sums.channels, kSumChannels);  // the interpolation needs distances
   std::vector<LatticeSample> samples(std::size_t(lattice.samples.x) * std::size_t(lattice.samples.y));
   for (std::size_t i = 0; i < sums.pixelCount(); ++i) {
-    const glm::ivec2 own = {int(i) % sums.extent.x, int(i) / sums.extent.x};
-    const double alpha = -std::expm1(-sums.value(SumChannel::OpticalDepth, i));
-    const bool isHidden = sums.value(SumChannel::Energy, i) < kMinEnergy * alpha;
-    const glm::ivec2 low = isHidden ? glm::max(own - 1, glm::ivec2(0)) : own, high = isHidden ? glm::min(own + 1, sums.extent - 1) : own;
-    LatticeSample sum;
-    for (int y = low.y; y <= high.y; ++y)
-      for (int x = low.x; x <= high.x; ++x) {
-        const std::size_t at = std::size_t(x) + std::size_t(sums.extent.x) * std::size_t(y);
-        sum.color += glm::dvec4(colorOf(sums, at), sums.value(SumChannel::Energy, at));
-        sum.distance += sums.value(SumChannel::Distance, at);
-      }
-    const double scale = sum.color.a > 0.0 ? alpha / sum.color.a : 1.0;
-    const glm::ivec2 place = sums.first + own;
-    samples[std::size_t(place.x) + std::size_t(lattice.samples.x) * std::size_t(place.y)] = {
-        {scale * glm::dvec3(sum.color), alpha}, scale * sum.distance};
+    const glm::ivec2 place = sums.first + glm::ivec2(int(i) % sums.extent.x, int(i) / sums.extent.x);
+    const double alpha = -std::expm1(-sums.value(SumChannel::OpticalDepth, i)), energy = sums.value(SumChannel::Energy, i);
+    const double scale = energy > 0.0 ? alpha / energy : 1.0;
+    samples[std::size_t(place.x) + std::size_t(lattice.samples.x) * std::size_t(place.y)] = {{scale * colorOf(sums, i), alpha},
+                                                                                             scale * sums.value(SumChannel::Distance, i)};
   }
   return resolveLattice(lattice, sums.size, samples);
 }

@@ -26,7 +26,7 @@ int hilbertBits(glm::ivec3 dimensions);
 /// box that is no such cube, consecutive cells need not be neighbours.
 std::vector<glm::ivec3> hilbertOrder(glm::ivec3 dimensions);
 
-/// Parts that a volume is divided into for distributed rendering. Fixed, so that sums over shares do not depend on the number of
+/// Parts that a frame is divided into for distributed rendering. Fixed, so that sums over shares do not depend on the number of
 /// processes among which the shares are dealt.
 inline constexpr int kShares = 256;
 

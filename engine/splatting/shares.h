@@ -2,7 +2,7 @@
 // The static distribution of an octree's blocks among the processes of a distributed render: Subr et al.
 // 2007, Section 4.4. Blocks are distributed in chunks, level by level along the Hilbert curve, to a fixed
 // number of shares (kShares, engine/octree/hilbert.h), whatever the number of processes. Process I of N
-// draws the shares I, I + N, I + 2N and so on.
+// draws the shares from 256 I / N to 256 (I + 1) / N. Gathered frames are divided by rows of samples instead (gather_rows.h).
 
 #include <algorithm>
 #include <cstdint>
@@ -33,11 +33,13 @@ struct ChunkShares {
 /// only the levels that chunkLevel returns are read.
 ChunkShares dealChunks(const HierarchyLayout& hierarchy, std::span<const std::vector<std::uint32_t>> occupied);
 
-/// The shares that one of `count` processes draws. 0 <= index < count <= kShares.
+/// The shares that one of `count` processes draws, which follow each other. 0 <= index < count <= kShares.
 struct SharePart {
   int index = 0, count = 1;
 
-  bool holds(int share) const { return share % count == index; }
+  int first() const { return kShares * index / count; }
+  int end() const { return kShares * (index + 1) / count; }
+  bool holds(int share) const { return first() <= share && share < end(); }
   bool operator==(const SharePart&) const = default;
 };
 

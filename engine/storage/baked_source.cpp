@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/core/machine.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/storage/chunk_reader.h"
 
@@ -99,8 +100,15 @@ std::shared_ptr<const Volume> BakedSource::whole(const Progress& progress) const
   return std::make_shared<const Volume>(readBaked(file_, finest_, progress));
 }
 
-std::shared_ptr<const VolumeSource> bakedSource(const std::shared_ptr<const FvxFile>& file, int finest, bool reads, const Progress& progress) {
+std::shared_ptr<const VolumeSource> bakedSource(const std::shared_ptr<const FvxFile>& file, int finest, bool reads,
+                                                const Progress& progress) {
   if (!reads) return std::make_shared<const BakedSource>(file, finest);
+  std::uint64_t bricks = 0;
+  for (const ChunkEntry& chunk : file->chunks(Channel::Scalars, finest)) bricks += std::uint64_t(chunk.bricks());
+  if (const std::uint64_t bytes = bricks * sizeof(ScalarBricks::Brick); bytes > machineMemoryBytes() / 4 * 3)
+    fail(ErrorKind::OutOfMemory,
+         "'{}' takes {} MiB in memory, and this machine has {} MiB: draw it as it was baked, which reads parts of it",
+         file->path().string(), bytes >> 20, machineMemoryBytes() >> 20);
   return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(readBaked(file, finest, progress)));
 }
 

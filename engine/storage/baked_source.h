@@ -15,7 +15,6 @@ class BakedSource : public VolumeSource {
   explicit BakedSource(std::shared_ptr<const fvx::FvxFile> file, int finest = 0);
 
   const fvx::FvxFile& file() const { return *file_; }
-  int finest() const { return finest_; }
   bool isInMemory() const override { return false; }
   int levels() const override { return int(outlines_.size()); }
   const Volume& outline(int level) const override { return outlines_[std::size_t(level)]; }
@@ -29,7 +28,9 @@ class BakedSource : public VolumeSource {
   std::vector<Volume> outlines_;
 };
 
-/// The source of a file's level; in memory if `reads` says so. `progress` may abandon that.
-std::shared_ptr<const VolumeSource> bakedSource(const std::shared_ptr<const fvx::FvxFile>& file, int finest, bool reads, const Progress& progress = {});
+/// The source of a file's level; in memory if `reads` says so, which fails with ErrorKind::OutOfMemory where this machine has too little.
+/// `progress` may abandon it.
+std::shared_ptr<const VolumeSource> bakedSource(const std::shared_ptr<const fvx::FvxFile>& file, int finest, bool reads,
+                                                const Progress& progress = {});
 
 }  // namespace freevoxels

@@ -9,9 +9,9 @@
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
 #include "engine/octree/device_volume.h"
+#include "engine/octree/hilbert.h"
 #include "engine/storage/chunk_reader.h"
 #include "engine/storage/fvx_writer.h"
-#include "engine/octree/hilbert.h"
 #include "engine/volume/transfer_table.h"
 #include "shaders/gather_interface.h"
 

@@ -13,10 +13,10 @@
 
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
+#include "engine/octree/hilbert.h"
 #include "engine/storage/chunk_pyramid.h"
 #include "engine/storage/chunk_reader.h"
 #include "engine/storage/fvx_index.h"
-#include "engine/octree/hilbert.h"
 #include "engine/storage/plane_codec.h"
 
 namespace freevoxels::fvx {

@@ -36,10 +36,10 @@ inline glm::ivec3 cellInChunk(int brick) {
 }
 
 enum class SectionKind : std::uint32_t {
-  Description = 1,  ///< JSON: everything that a reader needs to know of the volume
-  Provenance = 2,   ///< JSON: the origin of the file, for information
-  ChunkIndex = 3,   ///< ChunkEntry, in Hilbert order
-  Chunks = 4,       ///< the data that the index refers to
+  Description = 1,   ///< JSON: everything that a reader needs to know of the volume
+  Provenance = 2,    ///< JSON: the origin of the file, for information
+  ChunkIndex = 3,    ///< ChunkEntry, in Hilbert order
+  Chunks = 4,        ///< the data that the index refers to
   ContentCells = 5,  ///< ContentHeader and a bit for each cell
   // 6 and 7 were written by version 1.1; like all other kinds they are not read.
 };

@@ -12,8 +12,8 @@
 
 namespace freevoxels::fvx {
 
-/// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h). Calls: add() any number of times, then
-/// summary(), then finish() once.
+/// Throws std::system_error if it cannot write: to be used within writeAtomically (core/atomic_file.h). Calls: add() any number of times,
+/// then summary(), then finish() once.
 class FvxWriter {
  public:
   /// Chunks are spooled to unnamed temporary files in `folder`, one for each level and channel, because their

@@ -16,11 +16,10 @@ namespace freevoxels {
 struct VoxelRange {
   glm::ivec3 first{0}, end{0};
   glm::ivec3 extent() const { return end - first; }
-  std::uint64_t voxels() const { return std::uint64_t(extent().x) * std::uint64_t(extent().y) * std::uint64_t(extent().z); }
 };
 
-/// A volume and, where they are stored, coarser levels of it: a voxel of level l is the mean of a cube of 2^l voxels of level 0, at the same
-/// place in the world. Any thread may call the member functions.
+/// A volume and, where they are stored, coarser levels of it: a voxel of level l is the mean of a cube of 2^l voxels of level 0, at the
+/// same place in the world. Any thread may call the member functions.
 class VolumeSource {
  public:
   virtual ~VolumeSource() = default;

@@ -79,7 +79,7 @@ TEST_F(BakeCommand, InfoPrintsAndChecksAFile) {
   bytes[bytes.size() - 4096] = char(bytes[bytes.size() - 4096] ^ 1);
   writeBytes(folder / "a.fvx", bytes);
   expectRefusal(run("info @a.fvx --check"), ExitCode::Input, "damaged");
-  expectRefusal(run("render @a.fvx @a.png --size 16"), ExitCode::Input, "damaged");
+  expectRefusal(run("render @a.fvx @a.png --size 16 --quiet"), ExitCode::Input, "damaged");
   expectRefusal(run("info procedural:cloud --check"), ExitCode::Usage, "--check");
 }
 
@@ -90,7 +90,7 @@ TEST_F(BakeCommand, ACoarserLevelIsDrawnWhereItShowsTheSameAndNotWhereMemoryIsSh
   expectSuccess(run("render @a.fvx @far.exr --timings @t.json" + options));
   EXPECT_LT(nlohmann::json::parse(readBytes(folder / "t.json"))["voxels"], 128 * 128 * 128 / 7);
   EXPECT_GE(psnr(image("far.exr"), image("original.exr")), kSameFromAfar);
-  expectRefusal(run("render @a.fvx @near.exr --size 64 --unlit --memory-limit 4"), ExitCode::OutOfMemory, "--memory-limit");
+  expectRefusal(run("render @a.fvx @near.exr --size 64 --unlit --quiet --memory-limit 4"), ExitCode::OutOfMemory, "--memory-limit");
 }
 
 /// A part of the volume, close up, so that its voxels are needed.
@@ -109,7 +109,8 @@ TEST_F(BakeCommand, WhatDoesNotFitIsDrawnCubeByCubeAsTheWholeVolumeIs) {
   ASSERT_GE(inCubes.size(), 2u);
   for (const Image& image : inCubes) EXPECT_EQ(image.pixels, inCubes.front().pixels);
 
-  expectRefusal(run(render + "@table.exr --light-attenuation table --memory-limit 48"), ExitCode::OutOfMemory, "shadows from the table need");
+  expectRefusal(run(render + "@table.exr --light-attenuation table --quiet --memory-limit 48"), ExitCode::OutOfMemory,
+                "shadows from the table need");
 }
 
 TEST_F(BakeCommand, SharesOfWhatDoesNotFitAddUpToTheSameBitsHoweverManyThereAre) {
@@ -118,7 +119,8 @@ TEST_F(BakeCommand, SharesOfWhatDoesNotFitAddUpToTheSameBitsHoweverManyThereAre)
   expectSuccess(run(render + "48 @frame.exr --float"));
   expectSuccess(run(render + "48 @shares.exr --share 0/1 --float"));
   EXPECT_GE(psnr(image("shares.exr"), image("frame.exr")), 60.0);
-  for (const std::string part : {"0", "1", "2"}) expectSuccess(run(render + (part == "1" ? "64" : "48") + " @part" + part + ".exr --sums --share " + part + "/3"));
+  for (const std::string part : {"0", "1", "2"})
+    expectSuccess(run(render + (part == "1" ? "64" : "48") + " @part" + part + ".exr --sums --share " + part + "/3"));
   expectSuccess(run("merge @part0.exr @part1.exr @part2.exr @merged.exr --float --quiet"));
   EXPECT_EQ(largestPixelDifference(image("merged.exr"), image("shares.exr")), 0.0);
 }

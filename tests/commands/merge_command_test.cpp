@@ -39,10 +39,10 @@ TEST_F(MergeCommandTest, PartsOfAnyNumberGiveTheBitsOfTheWhole) {
     EXPECT_EQ(merged.pixels, whole.pixels) << count;
     EXPECT_EQ(merged.depth, whole.depth) << count;
   }
-  // Parts of different counts merge: 1/2 stands for 1/4 and 3/4.
+  // Parts of different counts merge: 1/2 stands for 2/4 and 3/4.
   renderPart("quarter_0.exr", "0/4", "--aov depth");
-  renderPart("quarter_2.exr", "2/4", "--aov depth");
-  expectSuccess(run("merge @quarter_0.exr @part_2_1.exr @quarter_2.exr @mixed.png --quiet"));
+  renderPart("quarter_1.exr", "1/4", "--aov depth");
+  expectSuccess(run("merge @quarter_0.exr @part_2_1.exr @quarter_1.exr @mixed.png --quiet"));
   EXPECT_EQ(readBytes(folder / "mixed.png"), readBytes(folder / "whole.png"));
 }
 

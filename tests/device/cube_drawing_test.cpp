@@ -160,7 +160,8 @@ TEST_F(CubeDrawingTest, TheImageHasTheSameBitsWithEveryMemoryLimit) {
 }
 
 TEST_F(CubeDrawingTest, AClippedVolumeWhoseBricksBeginBeforeItsBoxIsTheImageOfTheWholeVolume) {
-  const Volume volume = clippedVolume(randomVolume({90, 70, 50}, shearedTransform({90, 70, 50}), 0.5, 3.0), VoxelBox{{3, 5, 1}, {82, 66, 45}});
+  const Volume volume =
+      clippedVolume(randomVolume({90, 70, 50}, shearedTransform({90, 70, 50}), 0.5, 3.0), VoxelBox{{3, 5, 1}, {82, 66, 45}});
   ASSERT_NE(volume.scalars.corner(), glm::ivec3(0));
   FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}}});
   settings.lod = 0.0f;

@@ -110,9 +110,14 @@ void mutateIndex(std::uint8_t* index, std::uint64_t bytes, std::mt19937& random)
   if (count == 0) return;
   std::uint8_t* const entry = index + random() % count * kEntry;
   switch (random() % 4) {
-    case 0: std::swap_ranges(entry, entry + kEntry, index + random() % count * kEntry); break;
-    case 1: moveBrick(entry, random); break;
-    default: LLVMFuzzerMutate(entry + random() % (kEntry / 4) * 4, 4, 4);
+    case 0:
+      std::swap_ranges(entry, entry + kEntry, index + random() % count * kEntry);
+      break;
+    case 1:
+      moveBrick(entry, random);
+      break;
+    default:
+      LLVMFuzzerMutate(entry + random() % (kEntry / 4) * 4, 4, 4);
   }
 }
 
@@ -137,7 +142,9 @@ extern "C" std::size_t LLVMFuzzerCustomMutator(std::uint8_t* bytes, std::size_t 
   const fvx::Section& section = sections[random() % sections.size()];
   std::uint8_t* const first = bytes + section.offset;
   switch (section.kind) {
-    case fvx::SectionKind::ChunkIndex: mutateIndex(first, section.bytes, random); break;
+    case fvx::SectionKind::ChunkIndex:
+      mutateIndex(first, section.bytes, random);
+      break;
     default:
       if (section.bytes == 0) return LLVMFuzzerMutate(bytes, size, maximum);
       LLVMFuzzerMutate(first, section.bytes, section.bytes);

@@ -57,14 +57,14 @@ TEST_F(BakedTest, ARendererReadsTheLevelOfDetailThatEachFrameNeeds) {
 TEST_F(BakedTest, WhatDoesNotFitIsTheCommandLinesImage) {
   run("bake procedural:cloud a.fvx --resolution 150x96x97");
   const v1::Volume baked = v1::Volume::open(folder_ / "a.fvx");
-  v1::Renderer limited(baked, R"({"size": 60, "memory-limit": 16})");
+  v1::Renderer limited(baked, R"({"size": 60, "memory-limit": 30})");
   const std::string whole = saved(v1::Renderer(baked, R"({"size": 60})").render()), cubes = saved(limited.render());
-  EXPECT_TRUE(cubes == commandsImage("a.fvx --size 60 --memory-limit 16"));
+  EXPECT_TRUE(cubes == commandsImage("a.fvx --size 60 --memory-limit 30"));
   EXPECT_TRUE(whole == commandsImage("a.fvx --size 60"));
   EXPECT_TRUE(saved(limited.submit().image()) == cubes);
   const v1::Volume dense = v1::Volume::open("procedural:cloud", R"({"resolution": [150, 96, 97]})");
-  EXPECT_TRUE(saved(v1::Renderer(dense, R"({"size": 60, "memory-limit": 16})").render()) ==
-              commandsImage("procedural:cloud --resolution 150x96x97 --size 60 --memory-limit 16"));
+  EXPECT_TRUE(saved(v1::Renderer(dense, R"({"size": 60, "memory-limit": 30})").render()) ==
+              commandsImage("procedural:cloud --resolution 150x96x97 --size 60 --memory-limit 30"));
 }
 
 TEST_F(BakedTest, ADamagedChunkIsNamedWhenItIsDrawn) {

@@ -301,7 +301,7 @@ TEST(Library, RemarksSayWhatIsAssumed) {
     for (int y = 0; y < kSize[1]; ++y)
       for (int x = 0; x < kSize[0]; ++x) {
         const double distance = std::hypot(2.0 * x / kSize[0] - 1.0, 2.0 * y / kSize[1] - 1.0);
-        values.push_back(distance > 0.9 ? -9999.0f : float(distance < 0.5 ? 900 : 10) + float((7 * x + 13 * y + 29 * z) % 9));
+        values.push_back(distance > 0.9 ? -9999.0f : float(distance < 0.5 ? 900 : 10) + float((7 * x + 13 * y + 29 * z) % 83));
       }
   const v1::Volume volume = v1::Volume::copy(values, kSize);
   EXPECT_NE(volume.remarks().find("-9999"), std::string::npos) << volume.remarks();

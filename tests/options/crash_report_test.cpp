@@ -8,9 +8,9 @@
 #include <system_error>
 #include <thread>
 
+#include "apps/common/failure.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/crash_note.h"
-#include "apps/common/failure.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 

@@ -1,6 +1,5 @@
 """Reads baked volumes by engine/docs/fvx_format.md alone, for the tests: no code is shared with the writer. Checksums are not checked."""
 import ctypes
-import itertools
 import json
 import struct
 
@@ -79,45 +78,6 @@ class Fvx:
         for _ in range(level):
             size = [(n + 1) // 2 for n in size]
         return size
-
-    def regions(self):
-        """Dictionaries, in the order of the file."""
-        names = ("x", "y", "z", "level", "parts", "offset", "stored", "size", "hash", "codec")
-        index = self._section(6)
-        return [dict(zip(names, struct.unpack_from("<iiiIQQQQQI", index, at))) for at in range(0, len(index), 64)]
-
-    def region(self, entry):
-        """First voxel and extent of the box with the halo; {(direction, axis): {voxel: depth}} of all faces; {voxel: scalar} of the halo.
-        Densities must be 32-bit floats."""
-        raw = self.bytes[entry["offset"]:entry["offset"] + entry["stored"]]
-        if entry["codec"] == 1:
-            raw = zstd_planes(raw, entry["size"], 2)
-        size, cell = self.dimensions(entry["level"]), (entry["x"], entry["y"], entry["z"])
-        own = [(64 * c, min(64 * c + 64, n)) for c, n in zip(cell, size)]
-        box = [(max(first - 1, 0), min(end + 1, n)) for (first, end), n in zip(own, size)]
-        at, part, faces = 0, 0, {}
-        for z, y, x in itertools.product((-1, 0, 1), repeat=3):
-            for axis in range(3):
-                direction = (x, y, z)
-                if direction[axis] == 0:
-                    continue
-                plane = box[axis][1] - 1 if direction[axis] > 0 else box[axis][0]
-                ranges = [range(plane, plane + 1) if i == axis else range(*box[i]) for i in range(3)]
-                voxels = [(vx, vy, vz) for vz in ranges[2] for vy in ranges[1] for vx in ranges[0]]
-                codes = [0] * len(voxels)
-                if entry["parts"] >> part & 1:
-                    codes = struct.unpack_from(f"<{len(voxels)}H", raw, at)
-                    at += 2 * len(voxels)
-                faces[direction, axis] = {voxel: 16.0 * (code / 65535) ** 2 for voxel, code in zip(voxels, codes)}
-                part += 1
-        halo = [(x, y, z) for z in range(*box[2]) for y in range(*box[1]) for x in range(*box[0])
-                if not all(first <= v < end for v, (first, end) in zip((x, y, z), own))]
-        scalars = [0.0] * len(halo)
-        if entry["parts"] >> 54 & 1:
-            scalars = struct.unpack_from(f"<{len(halo)}f", raw, at)
-            at += 4 * len(halo)
-        assert at == entry["size"]
-        return box, faces, dict(zip(halo, scalars))
 
     @staticmethod
     def _value(encoding, raw, codes):

@@ -51,7 +51,7 @@ class ForkTest(unittest.TestCase):
         renderer = freevoxels.Renderer(freevoxels.Volume(BOX), **SMALL)
         renderer.render()
         frames = renderer.turntable(3)
-        for work in (lambda: draw(0), lambda: renderer.render(), lambda: next(frames), lambda: freevoxels.Volume.open("procedural:cube", resolution=8),
+        for work in (lambda: draw(0), lambda: renderer.render(), lambda: next(frames),
                      lambda: freevoxels.render("procedural:cube", resolution=8), lambda: freevoxels.Renderer(freevoxels.Volume(BOX))):
             self.assertRegex(in_fork(work), "DeviceError: this process was forked .* 'spawn'")
         self.assertEqual(renderer.render().shape, (12, 16, 4))
@@ -59,6 +59,7 @@ class ForkTest(unittest.TestCase):
     def test_what_needs_no_device_works_in_a_fork(self):
         draw(0)
         self.assertEqual(in_fork(lambda: freevoxels.Volume(BOX).shape), "(6, 7, 5)")
+        self.assertEqual(in_fork(lambda: freevoxels.Volume.open("procedural:cube", resolution=8).shape), "(8, 8, 8)")
         self.assertEqual(in_fork(lambda: freevoxels.save("/dev/null/x.png", np.zeros((2, 2, 4))) or "").split(":")[0], "OutputError")
 
     def test_renderers_may_be_freed_in_a_fork(self):

@@ -1,5 +1,5 @@
-#include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
+#include "engine/storage/baked_source.h"
 
 #include <fcntl.h>
 #include <gtest/gtest.h>

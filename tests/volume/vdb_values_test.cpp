@@ -33,7 +33,7 @@ FloatGrid::Ptr paddedScan(const Coord& size, float padding) {
     for (int y = 0; y < size.y(); ++y)
       for (int x = 0; x < size.x(); ++x) {
         const double distance = std::hypot(2.0 * x / size.x() - 1.0, 2.0 * y / size.y() - 1.0);
-        const float measured = (distance < 0.5 ? 1100.0f : 10.0f) + float((7 * x + 13 * y + 29 * z) % 9);
+        const float measured = (distance < 0.5 ? 1100.0f : 10.0f) + float((7 * x + 13 * y + 29 * z) % 83);
         grid->tree().setValueOn(Coord(x, y, z), distance < 0.9 ? measured : padding);
       }
   return grid;

@@ -110,10 +110,10 @@ class FREEVOXELS_API Volume {
  public:
   /// Reads an OpenVDB file, or makes "procedural:NAME"; if `file` is empty, that of the scene's key "volume". `scene` names the grid and
   /// the resolution, and has the keys of later frames: emission, temperature-grid and albedo-grid decide which further grids are
-  /// read. Throws if the device cannot hold the volume, except that a baked volume is opened at a lower resolution instead. The values
+  /// read. A volume that the device cannot hold is drawn piece by piece. The values
   /// of a baked volume are read when it is drawn, from the level of detail that the frame needs; its file must not be changed meanwhile.
   static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
-  /// For the device of the keys "device" and "memory-limit", which is opened.
+  /// The same for renderers of any device, none of which is opened here.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
   /// Copies the values of a box of `dimensions` (x, y, z) voxels, x fastest. NaN means no data.
   static Volume copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement = {});
