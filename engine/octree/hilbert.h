@@ -31,9 +31,13 @@ std::vector<glm::ivec3> hilbertOrder(glm::ivec3 dimensions);
 inline constexpr int kShares = 256;
 
 /// The share of a chunk from its position in the list of the stored chunks of its octree level in Hilbert order: round robin, so that
-/// every share has nearly equally many chunks of each level (Section 4.4).
+/// every share has nearly equally many chunks of each level (Section 4.4). Shares take turns in the order of their reversed bits, so that
+/// those that follow each other, which a process draws, are spread through the volume.
 inline constexpr int shareOf(std::uint64_t position) {
-  return int(position % std::uint64_t(kShares));
+  int share = 0;
+  for (int bit = 1; bit < kShares; bit *= 2, position /= 2) share = 2 * share + int(position % 2);
+  return share;
 }
+static_assert((kShares & (kShares - 1)) == 0);
 
 }  // namespace freevoxels

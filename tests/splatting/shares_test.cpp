@@ -47,7 +47,7 @@ TEST(SharesOfChunks, EveryLevelIsDealtEvenly) {
   EXPECT_EQ(dealt.shares.size(), chunks);
 }
 
-TEST(SharesOfChunks, ChunksInHilbertOrderGoToOneShareAfterTheOther) {
+TEST(SharesOfChunks, ChunksInHilbertOrderGoToAllPartsInTurn) {
   const HierarchyLayout hierarchy({64, 64, 64});  // 8 x 8 x 8 chunks of voxels, two for each share
   const auto blocks = occupiedBlocks(hierarchy, [](glm::ivec3) { return true; });
   const ChunkShares dealt = dealChunks(hierarchy, blocks);
@@ -55,7 +55,13 @@ TEST(SharesOfChunks, ChunksInHilbertOrderGoToOneShareAfterTheOther) {
   for (std::size_t i = 0; i < curve.size(); ++i) {
     const std::uint32_t block = hierarchy.indexOf({kChunkLevels, curve[i]});
     const auto place = std::size_t(std::ranges::find(blocks[kChunkLevels], block) - blocks[kChunkLevels].begin());
-    EXPECT_EQ(dealt.shares[place], i % kShares);
+    EXPECT_EQ(int(dealt.shares[place]), shareOf(i));
+  }
+  for (const int count : {2, 8, 128, 256}) {
+    std::vector<int> turns(std::size_t(count), 0);
+    for (int i = 0; i < count; ++i)
+      for (int part = 0; part < count; ++part) turns[std::size_t(part)] += SharePart{part, count}.holds(shareOf(std::uint64_t(i))) ? 1 : 0;
+    EXPECT_EQ(turns, std::vector<int>(std::size_t(count), 1)) << count;
   }
 }
 
