@@ -43,7 +43,8 @@ Image firstImage(const Device& device, const std::filesystem::path& file, glm::i
   scene.input.volume = file.string();
   scene.camera.size = size;
   FrameSettings settings{.size = size, .draw = Draw::Auto};
-  const int opened = level.value_or(scene.finestLevelNeeded(scene.input.baked().get(), 1));
+  const std::shared_ptr<const fvx::FvxFile> baked = scene.input.baked();
+  const int opened = level.value_or(baked ? scene.needOf(*baked, 1).level : 0);
   const Scene view = scene.resolve(std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device), opened)));
   settings.lighting = view.lighting;
   return Renderer(device, *view.volume, view.classification, {}).render(view.camera, settings);

@@ -164,7 +164,7 @@ FrameSettings SceneRenderer::prepare(const KeywordOptions& options, std::optiona
   FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
   options.scene.method.apply(settings);
   checkFrameFits(*context_->device, settings);
-  if (const SharedVolume::Need need = volume_->needOf(options.scene, step ? step->frames : 1); !source_ || need != need_) {
+  if (const BakedNeed need = volume_->needOf(options.scene, step ? step->frames : 1); !source_ || need != need_) {
     renderer_ = nullptr;  // which has the volume of the source before: not both at once
     scene_.volume = nullptr;
     source_ = nullptr;

@@ -85,7 +85,7 @@ class SceneRenderer {
 
   // While context_->turns is held:
   bool isDrawing_ = false;
-  SharedVolume::Need need_;
+  BakedNeed need_;
   std::shared_ptr<const VolumeSource> source_;  ///< of the last frame, what it needed
   Scene scene_;                                 ///< of the last frame, with what is known of the volume
   std::string classification_;                  ///< the fields of which scene_.classification was made

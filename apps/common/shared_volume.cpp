@@ -13,12 +13,7 @@ SharedVolume::SharedVolume(Volume volume)
 SharedVolume::SharedVolume(std::shared_ptr<const fvx::FvxFile> file)
     : file_(std::move(file)), description_(std::make_shared<const Volume>(bakedOutline(*file_))) {}
 
-SharedVolume::Need SharedVolume::needOf(const SceneDescription& scene, int frames) const {
-  if (!file_) return {};
-  return {.level = scene.finestLevelNeeded(file_.get(), frames), .isRead = !scene.isSeenAsBaked(*file_)};
-}
-
-std::shared_ptr<const VolumeSource> SharedVolume::source(const Need& need, const Progress& progress) const {
+std::shared_ptr<const VolumeSource> SharedVolume::source(const BakedNeed& need, const Progress& progress) const {
   if (file_ && !need.isRead) return bakedSource(file_, need.level, false);
   const std::lock_guard lock(mutex_);
   if (inMemory_ && (!file_ || need.level == level_)) return inMemory_;

@@ -18,16 +18,10 @@ class SharedVolume {
   /// The volume; of a file its finest level, without the values.
   const Volume& describe() const { return *description_; }
 
-  /// What a frame needs of a baked file.
-  struct Need {
-    int level = 0;
-    bool isRead = false;  ///< whether its values are needed before it is drawn
-    bool operator==(const Need&) const = default;
-  };
-  /// Of a frame of the scene, or of the frames of a turn, as on the command line.
-  Need needOf(const SceneDescription& scene, int frames) const;
+  /// What a frame of the scene needs, or the frames of a turn, as on the command line.
+  BakedNeed needOf(const SceneDescription& scene, int frames) const { return file_ ? scene.needOf(*file_, frames) : BakedNeed{}; }
   /// `progress` may abandon it. Fails as readBaked does.
-  std::shared_ptr<const VolumeSource> source(const Need& need, const Progress& progress) const;
+  std::shared_ptr<const VolumeSource> source(const BakedNeed& need, const Progress& progress) const;
 
  private:
   const std::shared_ptr<const fvx::FvxFile> file_;  ///< null where the volume is of no baked file

@@ -117,29 +117,25 @@ std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount,
   const std::shared_ptr<const fvx::FvxFile> file = input.baked();
   if (!file)
     return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(readVolume(kMaxNumberedVoxels, 0, progress, isFrame)));
-  return bakedSource(file, finestLevelNeeded(file.get(), frameCount), !mayStayFile || !isSeenAsBaked(*file), progress);
+  const BakedNeed need = needOf(*file, frameCount);
+  return bakedSource(file, need.level, need.isRead || !mayStayFile, progress);
 }
 
-bool SceneDescription::isSeenAsBaked(const fvx::FvxFile& file) const {
+BakedNeed SceneDescription::needOf(const fvx::FvxFile& file, int frameCount) const {
   const Volume outline = bakedOutline(file);
-  return isAsBaked(outline, resolveClassification(outline));
-}
-
-int SceneDescription::finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const {
-  if (file == nullptr) return 0;
-  const Volume outline = bakedOutline(*file);
   const Classification classified = resolveClassification(outline);
-  if (classified.transferFunction) return 0;
+  const bool isRead = !isAsBaked(outline, classified);
+  if (classified.transferFunction) return {.level = 0, .isRead = isRead};
   FrameSettings frame;
   method.apply(frame);
   const HierarchyLayout hierarchy(outline.dimensions);
-  int level = file->levels() - 1;
+  int level = file.levels() - 1;
   for (const Camera& one : cameras(outline, classified, frameCount)) {
     const PixelRays rays = pixelRays(one, camera.size, outline.indexToWorld);
     level = std::min(level, detailRule(hierarchy, rays, camera.size, double(frame.lod)).finest);
   }
   // One level finer than what is drawn, as the footprints of what is drawn are those of the opened level's voxels.
-  return std::max(level - 1, 0);
+  return {.level = std::max(level - 1, 0), .isRead = isRead};
 }
 
 std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classification& classified, int frameCount) const {

@@ -229,6 +229,13 @@ struct Scene {
   std::optional<Lighting> lighting;
 };
 
+/// What frames need of a baked file.
+struct BakedNeed {
+  int level = 0;
+  bool isRead = false;  ///< whether what is seen is known only from the values
+  bool operator==(const BakedNeed&) const = default;
+};
+
 struct SceneDescription {
   InputDescription input;
   ClassificationDescription classification;
@@ -245,15 +252,13 @@ struct SceneDescription {
   /// Reads the volume, with the grids that other fields need; of a baked one an octree level, which other volumes do not have. A frame of
   /// a film may lack grids.
   Volume readVolume(std::uint64_t maximumVoxels, int level = 0, const Progress& progress = {}, bool isFrame = false) const;
-  /// What frames are drawn of. A baked file is read by whoever draws it, where `mayStayFile` allows that and isSeenAsBaked(); other volumes
+  /// What frames need of a baked file: a level one finer than the finest of which anything is drawn, 0 where the levels are of scalars that
+  /// are classified by a transfer function; and values beforehand where it is classified otherwise than when it was baked.
+  BakedNeed needOf(const fvx::FvxFile& file, int frameCount) const;
+  /// What frames are drawn of. A baked file is read by whoever draws it, where `mayStayFile` allows that and needOf(); other volumes
   /// are read, with boxes of at most kMaxNumberedVoxels. A frame of a film may lack grids. Fails as readVolume().
   std::shared_ptr<const VolumeSource> openSource(int frameCount, bool mayStayFile = true, bool isFrame = false,
                                                  const Progress& progress = {}) const;
-  /// Whether what is seen of a baked volume is known without its values, as it is classified as it was when it was baked.
-  bool isSeenAsBaked(const fvx::FvxFile& file) const;
-  /// The level of a baked volume that frames need: one finer than the finest of which anything is drawn. 0 where the levels are of
-  /// scalars that are classified by a transfer function, and without a file.
-  int finestLevelNeeded(const fvx::FvxFile* file, int frameCount) const;
   /// As CameraDescription::resolve.
   std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frameCount = 1) const;
   /// Reads the other files and resolves everything.
