@@ -115,7 +115,6 @@ void Renderer::drawInCubes() {
 /// `error`, which a frame of the whole volume failed with, or where the device's memory is limited a sentence with what that needs; and why
 /// it is not drawn cube by cube.
 Error Renderer::withNeed(const Error& error, const FrameSettings& settings, const std::string& whyNotCubes) const {
-  if (error.kind() != ErrorKind::OutOfMemory) return error;
   const Error whole = volume_ ? withWholeNeed(error, device_, *volume_, classification_, table_.directions, settings) : error;
   if (whyNotCubes.empty()) return whole;
   return Error(ErrorKind::OutOfMemory, fmt::format("{}; it cannot be drawn piece by piece, as {}", whole.text(), whyNotCubes));
@@ -143,7 +142,8 @@ auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& prog
     try {
       return drawWhole(whole(settings.lighting.has_value(), progress), settings);
     } catch (const Error& error) {
-      if (error.kind() != ErrorKind::OutOfMemory || whyNotCubes || !mayChange) throw withNeed(error, settings, whyNotCubes.value_or(""));
+      if (error.kind() != ErrorKind::OutOfMemory) throw;
+      if (whyNotCubes || !mayChange) throw withNeed(error, settings, whyNotCubes.value_or(""));
     }
     inCubes_ = drewInCubes_ = true;
   }

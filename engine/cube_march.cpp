@@ -1,0 +1,198 @@
+// Marches the cubes of a frame, front to back.
+
+#include <algorithm>
+#include <cmath>
+
+#include "engine/cube_drawing_state.h"
+#include "engine/octree/volume_builder.h"
+#include "engine/splatting/splat_pass.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kBrick = ScalarBricks::kEdge;
+static_assert(CubeDrawing::kHalo % kBrick == 0);
+
+/// How far a cube is behind the eye's, in cubes: rays meet cubes in ascending order.
+int behindEye(glm::ivec3 cell, const RaySource& eye) {
+  int sum = 0;
+  for (int axis = 0; axis < 3; ++axis) {
+    if (eye.atInfinity)
+      sum += eye.place[axis] > 0.0 ? -cell[axis] : cell[axis];
+    else
+      sum += std::abs(cell[axis] - int(std::floor(std::clamp(eye.place[axis] / kCubeEdge, -1e6, 1e6))));
+  }
+  return sum;
+}
+
+/// Whether a frame reads slices of the cube.
+bool isRead(const shader::GatherFrame& frame, const VoxelRange& cube) {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!someRayHasAxis(frame, axis)) continue;
+    for (const auto& ofSign : frame.axes[axis].slices)
+      if (ofSign[0].x < cube.end[axis] && ofSign[0].y > cube.first[axis]) return true;
+  }
+  return false;
+}
+
+/// The part of a rectangle in some rows.
+SampleRectangle inRows(const SampleRectangle& rectangle, glm::ivec2 rows) {
+  SampleRectangle result = rectangle;
+  result.first.y = std::max(rectangle.first.y, rows.x);
+  result.extent.y = std::max(std::min(rectangle.first.y + rectangle.extent.y, rows.y) - result.first.y, 0);
+  return result;
+}
+
+/// The codes of a light in the order of a box's bricks.
+std::vector<std::uint16_t> codesOf(const SweptLight& light, const GatherVolume& inBox, glm::ivec3 firstBrick) {
+  std::vector<std::uint16_t> codes(std::size_t(inBox.brickCount()) * shader::kGatherBrickBlocks, 0);
+  const glm::ivec3 size = inBox.cells().bricks.front();
+  std::size_t cell = 0;
+  for (glm::ivec3 brick(0); brick.z < size.z; ++brick.z)
+    for (brick.y = 0; brick.y < size.y; ++brick.y)
+      for (brick.x = 0; brick.x < size.x; ++brick.x, ++cell)
+        if (const std::uint32_t number = inBox.cells().numbers[cell]; number != 0)
+          light.read(firstBrick + brick,
+                     std::span(codes).subspan(std::size_t(number) * shader::kGatherBrickBlocks, shader::kGatherBrickBlocks));
+  return codes;
+}
+
+}  // namespace
+
+/// The lattice and the levels of a frame, as if all of the volume were in memory.
+shader::GatherFrame CubeDrawing::State::latticeOf(const Camera& camera, const FrameSettings& settings) {
+  const CubeLevel& base = levelAt(0);
+  FrameConstants constants = makeFrameConstants(device, base.onDevice, table, camera, settings);
+  const int most = source->levels() - 1;
+  constants.detail.coarsest = std::min(constants.detail.coarsest, most);
+  constants.detail.finest = std::min(constants.detail.finest, most);
+  return makeGatherFrame(base.onDevice, camera, settings, constants.detail, constants.hiddenTransmittance);
+}
+
+/// The frame of a level whose blocks take the place of voxels.
+shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level) const {
+  shader::GatherFrame result =
+      makeGatherFrame(cubeLevel.onDevice, frame.camera, frame.settings, {}, double(frame.lattice.endTransmittance));
+  result.samples = frame.lattice.samples;
+  result.firstSample = frame.lattice.firstSample;
+  result.pitch = frame.lattice.pitch;
+  result.mainAxis = frame.lattice.mainAxis;
+  result.seenLow = frame.lattice.seenLow;
+  result.seenHigh = frame.lattice.seenHigh;
+  result.firstSeen = frame.lattice.firstSeen;
+  result.seenExtent = frame.lattice.seenExtent;
+  for (int axis = 0; axis < 3; ++axis)
+    for (int sign = 0; sign < 2; ++sign) result.axes[axis].slices[sign][0] = frame.lattice.axes[axis].slices[sign][level];
+  return result;
+}
+
+/// In the order in which rays meet them.
+std::vector<CubeDrawing::State::Cube> CubeDrawing::State::cubesOf(const Frame& frame, int level) {
+  const CubeLevel& cubeLevel = levelAt(level);
+  const RaySource eye = eyeSource(frame.camera, cubeLevel.outline().indexToWorld);
+  const shader::GatherFrame whole = frameOf(frame, cubeLevel, level);
+  std::vector<glm::ivec3> cells = cubeLevel.cubes;
+  std::ranges::stable_sort(cells, {}, [&](glm::ivec3 cell) { return behindEye(cell, eye); });
+  std::vector<Cube> cubes;
+  for (const glm::ivec3 cell : cells) {
+    const VoxelRange voxels = cubeVoxels(cell, cubeLevel.outline().dimensions);
+    if (!isRead(whole, voxels)) continue;
+    if (const auto seen = samplesThatSee(cubeLevel.onDevice, frame.camera, whole, voxels.first, voxels.end))
+      if (const SampleRectangle own = inRows(*seen, frame.rows); own.extent.y > 0)
+        cubes.push_back({.level = level, .voxels = voxels, .seen = own});
+  }
+  return cubes;
+}
+
+void CubeDrawing::State::drawLevel(const Frame& frame, int level, std::span<const Cube> cubes, bool isLastLevel) {
+  if (cubes.empty()) return;
+  CubeLevel& cubeLevel = levelAt(level);
+  if (frame.settings.lighting) {
+    const RaySource eye = eyeSource(frame.camera, cubeLevel.outline().indexToWorld);
+    cubeLevel.prepareLights(device, frame.allLights, times, frame.progress);
+    if (frame.settings.lighting->hasAmbient()) cubeLevel.prepareAmbient(device, *frame.settings.lighting, eye, times, frame.progress);
+  }
+  const shader::GatherFrame whole = frameOf(frame, cubeLevel, level);
+  for (std::size_t i = 0; i < cubes.size(); ++i) {
+    if (frame.progress) frame.progress("drawing cubes", double(i) / double(cubes.size()));
+    drawCube(frame, cubeLevel, whole, cubes[i], isLastLevel && i + 1 == cubes.size());
+    ++cubesRead[std::size_t(level)];
+  }
+}
+
+void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& whole, const Cube& cube,
+                                  bool isLast) {
+  const VoxelRange box = withHalo(cube.voxels, cubeLevel.outline().dimensions);
+  Volume volume;
+  {
+    const StageTimer timer(times, "read cubes");
+    volume = cubeLevel.read(box);
+  }
+  const BuiltVolume built = buildVolume(device, volume, frame.classification, times, {}, BuiltLevels::Voxels);
+  const SurroundingLight light{.dimensions = cubeLevel.outline().dimensions,
+                               .first = box.first,
+                               .ambient = cubeLevel.ambient ? &*cubeLevel.ambient : nullptr,
+                               .codes = [&](int number, const GatherVolume& inBox) {
+                                 return codesOf(*cubeLevel.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
+                               }};
+  GatherVolume inBox(device, volume, frame.classification, built, times, &light);
+  FrameConstants constants = makeFrameConstants(device, built.volume, table, frame.camera, frame.settings);
+  constants.detail.finest = constants.detail.coarsest = 0;
+  const GatherVolume::Shading shading{.frame = constants,
+                                      .table = nullptr,
+                                      .lighting = frame.settings.lighting ? &*frame.settings.lighting : nullptr,
+                                      .lights = nullptr,
+                                      .axes = {someRayHasAxis(whole, 0), someRayHasAxis(whole, 1), someRayHasAxis(whole, 2)}};
+  inBox.prepare(shading, times);
+  Commands commands(device);
+  inBox.record(commands, shading);
+  shader::GatherFrame gatherFrame = whole;
+  inBox.describe(gatherFrame);  // what record() has made too
+  gatherFrame.levels[0].dimensions = cubeLevel.outline().dimensions;
+  gatherFrame.cube = {
+      .first = box.first, .begin = cube.voxels.first, .end = cube.voxels.end, .corner = cube.seen.first, .extent = cube.seen.extent};
+  const auto march = [&](Commands& recording) {
+    gather->recordCube(recording, inBox, gatherFrame);
+    recording.submitAndWait(frame.progress);
+    addTimes(times, recording.times());
+  };
+  march(commands);
+  if (!isLast) return;
+  // Completes the sums of all samples, with a cube that holds nothing.
+  gatherFrame.cube.end = gatherFrame.cube.begin;
+  const SampleRectangle own = inRows({.first = gatherFrame.firstSeen, .extent = gatherFrame.seenExtent}, frame.rows);
+  gatherFrame.cube.corner = own.first;
+  gatherFrame.cube.extent = own.extent;
+  gatherFrame.cube.isLast = 1;
+  Commands completing(device);
+  march(completing);
+}
+
+void CubeDrawing::State::resolve(const Frame& frame, const FrameTargets& targets) {
+  Commands commands(device);
+  gather->recordImage(commands, frame.lattice, classification.isPost(levelAt(0).outline()), targets);
+  commands.submitAndWait(frame.progress);
+  addTimes(times, commands.times());
+}
+
+/// Marches the rows of the frame, whose sums are then in `gather`.
+void CubeDrawing::State::march(const Frame& frame) {
+  const std::size_t levelCount = std::size_t(frame.lattice.coarsest) + 1;
+  cubesRead.resize(std::max(cubesRead.size(), levelCount), 0);
+  if (!gather) gather.emplace(device);
+  {
+    Commands commands(device);
+    gather->recordClear(commands, frame.lattice);
+    commands.submitAndWait();
+  }
+  std::vector<std::vector<Cube>> levelCubes(levelCount);
+  std::size_t last = 0;
+  for (int level = frame.lattice.finest; level <= frame.lattice.coarsest; ++level) {
+    levelCubes[std::size_t(level)] = cubesOf(frame, level);
+    if (!levelCubes[std::size_t(level)].empty()) last = std::size_t(level);
+  }
+  for (std::size_t level = 0; level < levelCubes.size(); ++level) drawLevel(frame, int(level), levelCubes[level], level == last);
+}
+
+}  // namespace freevoxels
