@@ -22,8 +22,6 @@ bool hasOctree(const Volume& volume, const Classification& classification) {
 
 FrameSettings exactSettings(const FrameSettings& wanted, bool octree) {
   FrameSettings settings = wanted;
-  settings.draw = Draw::Gather;
-  settings.attenuation = AttenuationLookup::Exact;
   if (settings.lighting) settings.lighting->attenuation = LightAttenuation::Exact;
   if (!octree) settings.lod = 0.0f;
   return settings;
@@ -108,7 +106,7 @@ void CubeDrawing::State::begin(const Camera& camera, const FrameSettings& wanted
 }
 
 std::optional<std::string> CubeDrawing::whyNot(glm::ivec3 dimensions, const FrameSettings& settings) {
-  if (!drawsByGathering(settings)) return "splats are drawn of the whole volume";
+  if (!settings.gathers()) return "splats are drawn of the whole volume";
   if (!settings.lighting) return {};
   const Lighting& lighting = *settings.lighting;
   if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";

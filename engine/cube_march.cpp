@@ -67,7 +67,7 @@ shader::GatherFrame CubeDrawing::State::latticeOf(const Camera& camera, const Fr
   const int most = source->levels() - 1;
   constants.detail.coarsest = std::min(constants.detail.coarsest, most);
   constants.detail.finest = std::min(constants.detail.finest, most);
-  return makeGatherFrame(base.onDevice, camera, settings, constants.detail, constants.hiddenTransmittance);
+  return makeGatherFrame(base.onDevice, camera, settings, constants.detail, constants.endTransmittance);
 }
 
 /// The frame of a level whose blocks take the place of voxels.

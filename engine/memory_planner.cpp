@@ -64,16 +64,6 @@ LightAttenuation planLightAttenuation(const Device& device, const DeviceVolume& 
   return fits ? LightAttenuation::Exact : LightAttenuation::Table;
 }
 
-std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, VolumeMemory memory, const FrameSettings& settings,
-                              bool readsTable) {
-  if (settings.attenuation != AttenuationLookup::Auto) return settings.mostRayBytes;
-  if (!readsTable) memory.table = memory.sweep = 0;
-  std::uint64_t others = memory.peak() + frameBytes(settings);
-  if (settings.lighting && settings.lighting->attenuation == LightAttenuation::Exact)
-    others += lightRayMemory(volume, *settings.lighting).bytes;
-  return std::min(settings.mostRayBytes, device.memoryBytes() - std::min(device.memoryBytes(), others));
-}
-
 std::uint64_t planKeptQuadBytes(const Device& device) {
   return device.memoryBytes() / kOptionalDivisor;
 }
@@ -143,10 +133,6 @@ bool exceedsDevice(std::uint64_t deviceBytes, std::uint64_t mostVoxels, glm::ive
   constexpr std::uint64_t kMinBytes = sizeof(float) + 2 * sizeof(std::uint32_t);
   const glm::u64vec3 size(box);
   return size.x * size.y * size.z > mostVoxels || activeVoxels > deviceBytes / kMinBytes;
-}
-
-bool tableReplacesEyeRays(const FrameSettings& settings, const Error& reason) {
-  return settings.attenuation == AttenuationLookup::Auto && reason.kind() == ErrorKind::OutOfMemory;
 }
 
 void checkSplatsFit(const Device& device, const DeviceVolume& volume) {

@@ -78,17 +78,7 @@ bool exceedsDevice(std::uint64_t deviceBytes, std::uint64_t mostVoxels, glm::ive
 LightAttenuation planLightAttenuation(const Device& device, const DeviceVolume& volume, const VolumeMemory& memory,
                                       const FrameSettings& settings);
 
-/// The largest number of bytes that rays from the eye may take. With AttenuationLookup::Auto a frame can be drawn without rays, but
-/// not without its other buffers, so rays get what those leave. `readsTable` says whether the frame reads the table; the
-/// attenuation of its lights must be resolved.
-std::uint64_t planEyeRayBytes(const Device& device, const DeviceVolume& volume, VolumeMemory memory, const FrameSettings& settings,
-                              bool readsTable);
-
 /// How many bytes the gather's quads may take that a frame does not read, because a turntable returns to them.
 std::uint64_t planKeptQuadBytes(const Device& device);
-
-/// Whether a frame that has no room for rays from the eye, for this reason, is drawn by the table alone: AttenuationLookup::Auto, if
-/// memory was lacking.
-bool tableReplacesEyeRays(const FrameSettings& settings, const Error& reason);
 
 }  // namespace freevoxels

@@ -66,7 +66,7 @@ bool Renderer::makesEmissionLight() const {
 /// The volume as a whole, for a frame with or without light.
 Renderer::State& Renderer::whole(bool lit, const Progress& progress) {
   const bool wantsLight = lit && makesEmissionLight();
-  if (state_ && (!makesEmissionLight() || wantsLight == (state_->classification.emissionLight != nullptr))) return *state_;
+  if (state_ && (!makesEmissionLight() || wantsLight == (state_->scene.classification.emissionLight != nullptr))) return *state_;
   state_.reset();
   cubes_.reset();
   builtInFrame_ = true;
@@ -82,13 +82,7 @@ Renderer::State& Renderer::whole(bool lit, const Progress& progress) {
   }
   Classification classification = classification_;
   if (wantsLight) classification.emissionLight = emissionLight_;
-  auto state = std::make_unique<State>(State{.device = device_,
-                                             .hostVolume = *volume_,
-                                             .classification = std::move(classification),
-                                             .tableSettings = table_,
-                                             .buildTimes = std::move(times)});
-  state->built = buildVolume(device_, *volume_, state->classification, state->buildTimes, progress);
-  state_ = std::move(state);
+  state_.reset(new State{.scene = {device_, *volume_, classification, table_, std::move(times), progress}});
   return *state_;
 }
 
@@ -126,7 +120,6 @@ template <typename DrawWhole, typename DrawCubes>
 auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole,
                     const DrawCubes& drawCubes) {
   builtInFrame_ = false;
-  settings.draw = drawsByGathering(settings) ? Draw::Gather : Draw::Splats;
   const std::optional<std::string> whyNotCubes = CubeDrawing::whyNot(source_->outline().dimensions, settings);
   try {
     checkFrameFits(device_, settings);
@@ -154,13 +147,12 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
   checkCamera(camera);
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
-    const std::shared_ptr<const FrameTargets> targets = state.recordImage(commands, camera, fitting, progress);
+    const std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, fitting, progress);
     commands.beginPass("read back");
     state.colorReadback.record(device_, commands, targets->colorEnergy);
     if (settings.depth) state.distanceReadback.record(device_, commands, targets->distance);
-    commands.submitAndWait(progress);
-    addTimes(state.frameTimes, commands.times());
-    const StageTimer timer(state.frameTimes, "copy to host");
+    state.scene.submit(commands, progress);
+    const StageTimer timer(state.scene.frameTimes, "copy to host");
     return Image{.size = settings.size,
                  .pixels = state.colorReadback.read<glm::vec4>(),
                  .depth = settings.depth ? state.distanceReadback.read<float>() : std::vector<float>()};
@@ -176,9 +168,8 @@ std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camer
   checkCamera(camera);
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
-    std::shared_ptr<const FrameTargets> targets = state.recordImage(commands, camera, fitting, progress);
-    commands.submitAndWait(progress);
-    addTimes(state.frameTimes, commands.times());
+    std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, fitting, progress);
+    state.scene.submit(commands, progress);
     return targets;
   };
   const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) { return drawing.draw(camera, fitting, progress); };
@@ -186,15 +177,13 @@ std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camer
 }
 
 FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) {
-  FV_CHECK_EQ(wanted.composite == Composite::Sorted, false);
+  FV_CHECK_EQ(wanted.isSorted(), false);
   FV_CHECK_LT(part.index, part.count);
   FV_CHECK_LE(part.count, kShares);
   checkCamera(camera);
   FrameSettings settings = wanted;
-  if (!drawsByGathering(settings)) settings.cullThreshold = 0.0f;  // what hides a splat may be another part's
-  const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
-    return drawsByGathering(fitting) ? state.gatherShares(camera, fitting, part, progress) : state.splatShares(camera, fitting, part, progress);
-  };
+  if (!settings.gathers()) settings.splats().cullThreshold = 0.0f;  // what hides a splat may be another part's
+  const auto drawWhole = [&](State& state, const FrameSettings& fitting) { return state.shares(camera, fitting, part, progress); };
   const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) {
     return drawing.drawShares(camera, fitting, part, progress);
   };
@@ -202,22 +191,22 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
 }
 
 VolumeMemory Renderer::memory() const {
-  return state_ ? state_->memoryOfVolume() : cubes_ ? cubes_->memory() : VolumeMemory();
+  return state_ ? state_->scene.memory() : cubes_ ? cubes_->memory() : VolumeMemory();
 }
 
 std::vector<StageTime> Renderer::buildTimings() const {
-  return state_ ? state_->buildTimes : std::vector<StageTime>();
+  return state_ ? state_->scene.buildTimes : std::vector<StageTime>();
 }
 
 std::vector<StageTime> Renderer::frameTimings() const {
   if (!state_) return cubes_ ? cubes_->timings() : std::vector<StageTime>();
-  return builtInFrame_ ? timings() : state_->frameTimes;
+  return builtInFrame_ ? timings() : state_->scene.frameTimes;
 }
 
 std::vector<StageTime> Renderer::timings() const {
   if (!state_) return frameTimings();
-  std::vector<StageTime> times = state_->buildTimes;
-  std::ranges::copy(state_->frameTimes, std::back_inserter(times));
+  std::vector<StageTime> times = state_->scene.buildTimes;
+  std::ranges::copy(state_->scene.frameTimes, std::back_inserter(times));
   return times;
 }
 
@@ -226,21 +215,12 @@ std::vector<std::size_t> Renderer::cubesRead() const {
 }
 
 std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
-  if (!state_ || !state_->built.hasBlocks()) return {};
-  return state_->built.volume.stored.front();
-}
-
-bool Renderer::lackedRoomForRays() const {
-  return state_ && state_->lastLackedRays;
+  if (!state_ || !state_->scene.built.hasBlocks()) return {};
+  return state_->scene.built.volume.stored.front();
 }
 
 CutCounts Renderer::cutCounts() const {
-  if (!state_ || state_->lastDrawn == nullptr) return {};
-  if (state_->lastWasCut) return state_->cutter->counts();
-  CutCounts counts{.drawn = std::vector<std::uint64_t>(std::size_t(state_->lastLevel), 0)};
-  counts.drawn.push_back(downloadBlockCount(state_->device, *state_->lastDrawn));
-  counts.considered = counts.drawn.back();
-  return counts;
+  return state_ && state_->drewSplats ? state_->splats.counts() : CutCounts();
 }
 
 }  // namespace freevoxels

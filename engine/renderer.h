@@ -25,9 +25,6 @@ namespace freevoxels {
 
 class CubeDrawing;
 
-/// A stage of renderShares, once for a part: the list of the blocks that it has to look at.
-inline constexpr const char* kChoosingShares = "choose blocks of shares";
-
 /// Draws the frames of one volume on one device, which must outlive it. The volume is on the device as a whole where that fits; otherwise
 /// gathered frames are drawn cube by cube (cube_drawing.h), and others fail with ErrorKind::OutOfMemory and a sentence with what they need.
 class Renderer {
@@ -53,7 +50,7 @@ class Renderer {
 
   /// The sums of the shares of a part in fixed point: those of all parts add up to the same bits, however many parts there are, on
   /// devices of one kind that all draw the whole volume, or all cube by cube. resolveSums makes the image. Drawn as render() would, by
-  /// gathering or by splats, the latter with nothing left out as hidden. `settings.composite` must not be Sorted. Lack of memory is an
+  /// gathering or by splats, the latter with nothing left out as hidden. `settings` must not be sorted. Lack of memory is an
   /// error here where it would make render() draw cubes, as other processes could not know.
   FixedSums renderShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress = {});
 
@@ -79,8 +76,6 @@ class Renderer {
   std::optional<std::uint64_t> occupiedVoxelCount() const;
   /// The counts of the last frame's cut; none without one.
   CutCounts cutCounts() const;
-  /// Whether the last frame used Bilinear for Auto only because the device lacks memory for rays from the eye.
-  bool lackedRoomForRays() const;
 
  private:
   friend class RendererStages;  // renderer_stages.h

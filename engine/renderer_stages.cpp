@@ -1,8 +1,11 @@
 #include "engine/renderer_stages.h"
 
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
+#include "engine/octree/block_list.h"
 #include "engine/renderer_state.h"
+#include "engine/splatting/sums_readback.h"
 
 namespace freevoxels {
 
@@ -14,94 +17,94 @@ RendererStages::RendererStages(const Renderer& renderer)
                                                                    Parameter("memory-limit")))) {}
 
 std::vector<SplatSums> RendererStages::renderSums(const Camera& camera, const FrameSettings& settings) const {
-  FV_CHECK_EQ(settings.composite == Composite::Sorted, false);
+  FV_CHECK_EQ(settings.isSorted(), false);
   checkCamera(camera);
-  checkFrameFits(state_.device, settings);
-  Commands commands(state_.device);
+  checkFrameFits(state_.scene.device, settings);
+  Commands commands(state_.scene.device);
   FrameSettings whole = settings;
-  whole.cullThreshold = 0.0f;
-  const Renderer::State::Splatting frame = state_.recordSplats(commands, camera, whole);
+  whole.splats().cullThreshold = 0.0f;
+  const SplatDrawing::Frame frame = state_.splats.prepare(commands, camera, whole, {});
+  state_.splats.recordSums(commands, frame);
   commands.beginPass("read back");
-  const SumsReadback sums(state_.device, commands, *frame.targets);
-  commands.submitAndWait();
-  addTimes(state_.frameTimes, commands.times());
+  const SumsReadback sums(state_.scene.device, commands, *frame.targets);
+  state_.scene.submit(commands);
   return sums.read(frame.constants);
 }
 
 void RendererStages::clearGather() const {
-  if (!state_.gather) return;
-  Commands clearing(state_.device);
-  state_.gather->recordClear(clearing);
+  if (!state_.gather.hasPass()) return;
+  Commands clearing(state_.scene.device);
+  state_.gather.pass().recordClear(clearing);
   clearing.submitAndWait();
 }
 
 std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const FrameSettings& settings,
                                                     std::span<const std::uint32_t> places) const {
   clearGather();
-  const Renderer::State::Gathering frame = state_.prepareGather(camera, settings, {});
-  Commands commands(state_.device);
-  state_.gather->begin(commands, frame.lattice);
-  state_.gather->recordListed(commands, *state_.gatherVolume, frame.lattice, places);
+  const GatherDrawing::Frame frame = state_.gather.prepare(camera, settings, {});
+  Commands commands(state_.scene.device);
+  GatherPass& pass = state_.gather.pass();
+  pass.begin(commands, frame.lattice);
+  pass.recordListed(commands, state_.gather.volume(), frame.lattice, places);
   commands.submitAndWait();
-  return state_.gather->downloadGathered();
+  return pass.downloadGathered();
 }
 
 GatherStages RendererStages::renderGatherStages(const Camera& camera, const FrameSettings& settings) const {
-  FV_CHECK_EQ(int(settings.draw), int(Draw::Gather));
+  FV_CHECK_EQ(settings.gathers(), true);
   checkCamera(camera);
-  checkFrameFits(state_.device, settings);
+  checkFrameFits(state_.scene.device, settings);
   clearGather();
-  Commands commands(state_.device);
-  const std::shared_ptr<const FrameTargets> targets = state_.recordImage(commands, camera, settings, {});
-  commands.submitAndWait();
-  addTimes(state_.frameTimes, commands.times());
-  GatherStages stages = downloadGatherStages(state_.device, state_.built, *state_.gatherVolume, *state_.gather);
-  stages.image = downloadImage(state_.device, *targets);
+  Commands commands(state_.scene.device);
+  const std::shared_ptr<const FrameTargets> targets = state_.record(commands, camera, settings, {});
+  state_.scene.submit(commands);
+  GatherStages stages = downloadGatherStages(state_.scene.device, state_.scene.built, state_.gather.volume(), state_.gather.pass());
+  stages.image = downloadImage(state_.scene.device, *targets);
   return stages;
 }
 
 std::vector<float> RendererStages::downloadExtinction() const {
-  const LevelData voxels = downloadMedium(state_.device, state_.builtWithBlocks().volume, 0);
+  const LevelData voxels = downloadMedium(state_.scene.device, state_.scene.builtWithBlocks().volume, 0);
   return {voxels.extinction.begin(), voxels.extinction.end()};
 }
 
 std::vector<glm::dvec3> RendererStages::downloadEmission() const {
-  return downloadMedium(state_.device, state_.builtWithBlocks().volume, 0).emission;
+  return downloadMedium(state_.scene.device, state_.scene.builtWithBlocks().volume, 0).emission;
 }
 
 std::vector<std::vector<std::uint8_t>> RendererStages::downloadTable() const {
-  return freevoxels::downloadTable(state_.device, state_.builtWithBlocks().volume, state_.sweptTable());
+  return freevoxels::downloadTable(state_.scene.device, state_.scene.builtWithBlocks().volume, state_.scene.table(false));
 }
 
-RayCodes RendererStages::downloadRays(const Camera& camera) const {
-  RaySweep sweep(state_.device);
-  return sweep.sweep(state_.builtWithBlocks().volume, eyeSource(camera, state_.built.volume.indexToWorld));
+RayCodes RendererStages::downloadRays(const RaySource& source) const {
+  RaySweep sweep(state_.scene.device);
+  return sweep.sweep(state_.scene.builtWithBlocks().volume, source);
 }
 
 std::vector<Block> RendererStages::downloadDrawnBlocks() const {
   std::vector<Block> blocks;
-  if (state_.lastDrawn == nullptr) return blocks;
-  for (const std::uint32_t index : freevoxels::downloadBlockList(state_.device, *state_.lastDrawn))
-    blocks.push_back(state_.built.volume.hierarchy.blockAt(index));
+  if (!state_.drewSplats || state_.splats.lastDrawn() == nullptr) return blocks;
+  for (const std::uint32_t index : freevoxels::downloadBlockList(state_.scene.device, *state_.splats.lastDrawn()))
+    blocks.push_back(state_.scene.built.volume.hierarchy.blockAt(index));
   return blocks;
 }
 
 std::vector<LevelData> RendererStages::downloadLevels() const {
-  const AttenuationTable& table = state_.tableWithLevels();
+  const AttenuationTable& table = state_.scene.table(true);
+  const DeviceVolume& volume = state_.scene.built.volume;
   std::vector<LevelData> levels;
-  for (int level = 1; level <= state_.built.volume.hierarchy.top(); ++level) {
-    LevelData data = downloadMedium(state_.device, state_.built.volume, level);
-    data.table = freevoxels::downloadTable(state_.device, state_.built.volume, table, level);
-    data.bounds = downloadBounds(state_.device, state_.built.volume, table, level);
+  for (int level = 1; level <= volume.hierarchy.top(); ++level) {
+    LevelData data = downloadMedium(state_.scene.device, volume, level);
+    data.table = freevoxels::downloadTable(state_.scene.device, volume, table, level);
+    data.bounds = downloadBounds(state_.scene.device, volume, table, level);
     levels.push_back(std::move(data));
   }
   return levels;
 }
 
 std::vector<std::uint32_t> RendererStages::downloadBlockList() const {
-  std::vector<std::uint32_t> voxels =
-      freevoxels::downloadBlockList(state_.device, state_.builtWithBlocks().visible);
-  for (std::uint32_t& voxel : voxels) voxel = state_.built.volume.layout.unpaddedIndex(voxel);
+  std::vector<std::uint32_t> voxels = freevoxels::downloadBlockList(state_.scene.device, state_.scene.builtWithBlocks().visible);
+  for (std::uint32_t& voxel : voxels) voxel = state_.scene.built.volume.layout.unpaddedIndex(voxel);
   return voxels;
 }
 

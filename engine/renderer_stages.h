@@ -27,8 +27,8 @@ class RendererStages {
   std::vector<glm::dvec3> downloadEmission() const;
   /// The attenuation table: bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
-  /// Depths along rays from the camera's eye. Fails with ErrorKind::OutOfMemory.
-  RayCodes downloadRays(const Camera& camera) const;
+  /// Depths along rays from a source. Fails with ErrorKind::OutOfMemory.
+  RayCodes downloadRays(const RaySource& source) const;
   /// Indices (Volume::at) of the occupied voxels, in the order in which they are drawn.
   std::vector<std::uint32_t> downloadBlockList() const;
   /// The blocks that the last frame drew, in that order, if it was not sorted.
@@ -36,10 +36,10 @@ class RendererStages {
   /// The levels above the voxels; the first has blocks of 2³ voxels.
   std::vector<LevelData> downloadLevels() const;
 
-  /// The sums of every pixel, top row first, which render() resolves. `settings.composite` must not be Sorted. Sums of the parts of a
+  /// The sums of every pixel, top row first, which render() resolves. `settings` must be of splats, and not sorted. Sums of the parts of a
   /// volume add up to those of the whole; therefore no hidden blocks are left out.
   std::vector<SplatSums> renderSums(const Camera& camera, const FrameSettings& settings) const;
-  /// What Renderer::render makes by gathering, with the stages before the image. `settings.draw` must be Gather.
+  /// What Renderer::render makes by gathering, with the stages before the image. `settings` must gather.
   GatherStages renderGatherStages(const Camera& camera, const FrameSettings& settings) const;
   /// The sums that the rays at `places` of the frame's lattice (x + y times its width) have if they are marched in this order and without
   /// the others, whose sums are 0.

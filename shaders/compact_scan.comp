@@ -1,7 +1,6 @@
 #version 460
 // Second pass of the list of occupied blocks, one workgroup: turns counts into offsets (exclusive sum), and
-// the total into the arguments of each chunk's dispatch and draw. If a list is continued, the number of its
-// blocks so far precedes its counts.
+// the total into the arguments of each chunk's dispatch and draw.
 #extension GL_GOOGLE_include_directive : require
 #include "interface.h"
 
@@ -18,29 +17,28 @@ void main() {
   const uint first = min(thread * perThread, push.groupCount);
   const uint last = min(first + perThread, push.groupCount);
   uint sum = 0;
-  for (uint i = first; i < last; ++i) sum += groupCounts[push.firstCount + i];
+  for (uint i = first; i < last; ++i) sum += groupCounts[i];
   sums[thread] = sum;
   barrier();
 
-  const uint before = push.firstCount > 0 ? groupCounts[push.firstCount - 1] : 0;
-  uint offset = before;
-  uint total = before;
+  uint offset = 0;
+  uint total = 0;
   for (uint i = 0; i < kScanThreads; ++i) {
     offset += i < thread ? sums[i] : 0;
     total += sums[i];
   }
   for (uint i = first; i < last; ++i) {
-    const uint count = groupCounts[push.firstCount + i];
-    groupCounts[push.firstCount + i] = offset;
+    const uint count = groupCounts[i];
+    groupCounts[i] = offset;
     offset += count;
   }
 
-  if (thread == 0) groupCounts[push.firstCount + push.groupCount] = total;
+  if (thread == 0) groupCounts[push.groupCount] = total;
 
   for (uint chunk = thread; chunk < push.chunkCount; chunk += kScanThreads) {
-    const uint start = min(before + chunk * kSplatsPerChunk, total);
+    const uint start = min(chunk * kSplatsPerChunk, total);
     const uint count = min(total - start, uint(kSplatsPerChunk));
-    chunks[push.firstChunk + chunk] = ChunkArguments((count + kSplatThreads - 1) / kSplatThreads, 1, 1,  //
+    chunks[chunk] = ChunkArguments((count + kSplatThreads - 1) / kSplatThreads, 1, 1,  //
                                                      count, start,                                       //
                                                      count, 1, 0, 0,                                     //
                                                      4, count, 0, 0);

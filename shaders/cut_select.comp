@@ -1,40 +1,31 @@
 #version 460
 // First pass of the cut through the octree, one dispatch for each level, from the coarsest: which of the
-// level's candidates are drawn (a bit for each slot, candidate_slot.glsl), and how many of each workgroup. Subr et
+// level's candidates are drawn (a bit for each slot, cut_frame.glsl), and how many of each workgroup. Subr et
 // al. 2007, Section 3.3: the level is chosen by size on the image. Blocks outside of the image and hidden
 // blocks are left out with everything below them.
 //
 // A parent is twice as large as its children and as near to the eye as the nearest of them. Therefore exactly
 // one of the blocks around a voxel is drawn, unless it is left out.
-//
-// Blocks that the table calls hidden are deferred. After the others are drawn, the cut continues below the
-// deferred blocks, and leaves out those that reach covered pixels only.
 #extension GL_GOOGLE_include_directive : require
 #define OCCUPANCY_BINDING 2
-#define PLANE_ADDRESSES_BINDING 8
-#include "candidate_slot.glsl"
-#include "covered_block.glsl"
+#define PLANE_ADDRESSES_BINDING 7
+#include "cut_frame.glsl"
 #include "table_occlusion.glsl"
 
-// Whether this is the second phase, which continues below the deferred blocks.
-layout(constant_id = 1) const bool kDeferred = false;
 // Whether the level is that of the voxels. A specialisation constant, because lavapipe executes branches that
 // no thread takes.
-layout(constant_id = 2) const bool kVoxels = false;
+layout(constant_id = 1) const bool kVoxels = false;
 
 // Whether only some of the blocks are candidates (engine/visibility/cut_candidates.h).
-layout(constant_id = 3) const bool kSome = false;
+layout(constant_id = 2) const bool kSome = false;
 
 layout(local_size_x = kCutThreads) in;
-// A byte for each block above the voxels, four in a word: which of its children to test, and which of them
-// are deferred.
-layout(scalar, binding = 3) buffer Children { uint children[]; };
-layout(scalar, binding = 4) buffer Deferred { uint deferred[]; };
-layout(scalar, binding = 5) writeonly buffer Masks { uint masks[]; };
-layout(scalar, binding = 6) buffer GroupCounts { uint groupCounts[]; };
-layout(scalar, binding = 7) buffer Counts { CutCounts counts; };
+layout(scalar, binding = 3) buffer Opened { uint opened[]; };  // a bit for each block above the voxels: whether to test its children
+layout(scalar, binding = 4) writeonly buffer Masks { uint masks[]; };
+layout(scalar, binding = 5) buffer GroupCounts { uint groupCounts[]; };
+layout(scalar, binding = 6) buffer Counts { CutCounts counts; };
 // kSome: for each parent of the list, a bit for each child that is a candidate.
-layout(scalar, binding = 10) readonly buffer Candidates { uint candidates[]; };
+layout(scalar, binding = 8) readonly buffer Candidates { uint candidates[]; };
 
 shared CutCounts sums;
 shared uint asked[kCutSlotsPerGroup];  // the slots to test, in any order
@@ -68,16 +59,13 @@ uint parentPlace(uint slot) {
 
 // Which of a thread's slots to test, a bit each.
 uint candidateSlots(uint first) {
-  if (push.level == frame.top) return !kDeferred && first == 0 ? 1 : 0;
-  if (kDeferred && counts.deferred == 0) return 0;
+  if (push.level == frame.top) return first == 0 ? 1 : 0;
   uint bits = 0;
   for (uint i = 0; i < kCutSlotsPerThread / 8; ++i) {
     if (first + 8 * i >= push.slotCount) break;
     const uint parent = parentPlace(first + 8 * i);
-    const uint word = kDeferred ? deferred[parent / 4] : children[parent / 4];
-    uint tested = word >> (8 * (parent & 3)) & 255;
-    if (kSome) tested &= candidates[first / 8 + i];
-    bits |= tested << (8 * i);
+    if ((opened[parent / 32] >> (parent & 31) & 1) == 0) continue;
+    bits |= (kSome ? candidates[first / 8 + i] & 255 : 255u) << (8 * i);
   }
   return bits;
 }
@@ -86,19 +74,6 @@ uint candidateSlots(uint first) {
 void listAsked(uint bits, uint firstInGroup) {
   uint place = atomicAdd(askedCount, uint(bitCount(bits)));
   for (; bits != 0; bits &= bits - 1) asked[place++] = firstInGroup + uint(findLSB(bits));
-}
-
-void defer(uint slot) {
-  const uint parent = parentPlace(slot);
-  atomicOr(deferred[parent / 4], 1u << (8 * (parent & 3) + (slot & 7)));
-}
-
-void open(uint block) {
-  const uint allOfThem = 255u << (8 * (block & 3));
-  if (kDeferred)
-    atomicOr(deferred[block / 4], allOfThem);
-  else
-    atomicOr(children[block / 4], allOfThem);
 }
 
 // Whether the block of a slot is drawn. Opens the block if its children may be drawn instead.
@@ -117,20 +92,14 @@ bool isDrawn(uint slot, inout CutCounts found) {
     return false;
   }
   // Voxels are not tested: the test costs about as much as drawing a splat.
-  if (!kVoxels && push.level < frame.top && frame.hides != 0) {
-    if (kDeferred && isOccluded(center, edge)) {
-      ++found.hidden;
-      return false;
-    }
-    if (!kDeferred && isHidden(cell, push.level)) {
-      ++found.deferred;
-      defer(slot);
-      return false;
-    }
+  if (!kVoxels && push.level < frame.top && frame.hides != 0 && isHidden(cell, push.level)) {
+    ++found.hidden;
+    return false;
   }
   if (push.level == frame.finest || push.level <= frame.coarsest && isSmall(center, edge)) return true;
   ++found.opened;
-  open(rankAt(frame.levels[push.level], address) - frame.coarseFirst);
+  const uint place = rankAt(frame.levels[push.level], address) - frame.coarseFirst;
+  atomicOr(opened[place / 32], 1u << (place & 31));
   return false;
 }
 
@@ -142,10 +111,10 @@ void main() {
   mask[thread] = 0;
   if (thread == 0) {
     drawn = askedCount = 0;
-    sums = CutCounts(0, 0, 0, 0, 0);
+    sums = CutCounts(0, 0, 0, 0);
   }
   barrier();
-  CutCounts found = CutCounts(0, 0, 0, 0, 0);
+  CutCounts found = CutCounts(0, 0, 0, 0);
   listAsked(candidateSlots(first + thread * kCutSlotsPerThread), thread * kCutSlotsPerThread);
   barrier();
   for (uint i = thread; i < askedCount; i += kCutThreads)
@@ -157,13 +126,11 @@ void main() {
   atomicAdd(sums.outside, found.outside);
   atomicAdd(sums.hidden, found.hidden);
   atomicAdd(sums.opened, found.opened);
-  atomicAdd(sums.deferred, found.deferred);
   barrier();
   if (thread != 0) return;
-  if (push.level <= frame.coarsest) groupCounts[push.firstOffset + group] = drawn;
+  if (push.level <= frame.coarsest) groupCounts[push.firstGroup + group] = drawn;
   atomicAdd(counts.empty, sums.empty);
   atomicAdd(counts.outside, sums.outside);
   atomicAdd(counts.hidden, sums.hidden);
   atomicAdd(counts.opened, sums.opened);
-  atomicAdd(counts.deferred, sums.deferred);
 }

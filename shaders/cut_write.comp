@@ -2,7 +2,7 @@
 // Last pass of the cut, one dispatch for each level, after compact_scan.comp: writes the drawn blocks at
 // their positions, in the order of their slots.
 #extension GL_GOOGLE_include_directive : require
-#include "candidate_slot.glsl"
+#include "cut_frame.glsl"
 
 layout(local_size_x = kCutThreads) in;
 layout(scalar, binding = 2) readonly buffer Masks { uint masks[]; };
@@ -19,7 +19,7 @@ void main() {
   uint mask = first < push.slotCount ? masks[(push.firstGroup + group) * kCutThreads + thread] : 0;
   uint offset = countBefore(thread, bitCount(mask));
   if (mask == 0) return;
-  offset += groupOffsets[push.firstOffset + group];
+  offset += groupOffsets[push.firstGroup + group];
   for (; mask != 0; mask &= mask - 1)
     drawn[offset++] = blockAddress(frame.levels[push.level], cellOfSlot(first + uint(findLSB(mask))));
 }

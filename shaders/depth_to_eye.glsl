@@ -3,7 +3,6 @@
 #ifndef DEPTH_TO_EYE_GLSL
 #define DEPTH_TO_EYE_GLSL
 #include "block_depth.glsl"
-#include "ray_lookup.glsl"
 
 vec3 directionToEye(vec3 position) {
   vec3 toEye = -(position - frame.middle + frame.eyeToMiddle);
@@ -32,13 +31,6 @@ float tableSlope(Block block, int axis) {
   return (tableDepth(after, unused) - tableDepth(before, unused)) / max(after.center[axis] - before.center[axis], 1.0);
 }
 
-// The depth at the block's centre. If that lies between two planes, the mean of the line of sight's depths on
-// both.
-vec3 rayDepthOf(FaceRays fan, Block block, vec3 direction) {
-  if (block.extent[fan.axis] % 2 == 1) return rayDepth(fan, block.center);
-  return 0.5 * (rayDepth(fan, block.center + 0.5 * direction) + rayDepth(fan, block.center - 0.5 * direction));
-}
-
 struct DepthToEye {
   float depth;
   vec3 gradient;  // per voxel, index space
@@ -57,12 +49,6 @@ DepthToEye inFrontOf(Block block, vec3 direction, int axis, vec3 middle, float l
   return result;
 }
 
-DepthToEye alongRays(Block block, float sigma, vec3 direction) {
-  const FaceRays fan = frame.fans[fanIndex(-direction)];
-  const float layerDepth = sigma * layerLength(direction);
-  return inFrontOf(block, direction, fan.axis, rayDepthOf(fan, block, direction), layerDepth, layerDepth);
-}
-
 DepthToEye fromTable(Block block, float sigma, vec3 direction) {
   const int axis = majorAxis(direction);
   float unsaturated;
@@ -76,14 +62,7 @@ DepthToEye fromTable(Block block, float sigma, vec3 direction) {
 // `sigma` is the block's extinction.
 DepthToEye depthToEye(Block block, float sigma) {
   if (frame.lookup == kLookupNone) return DepthToEye(0.0, vec3(0.0));
-  const vec3 direction = directionToEye(block.center);
-  if (frame.lookup == kLookupExact) return alongRays(block, sigma, direction);
-  const DepthToEye table = fromTable(block, sigma, direction);
-  if (frame.rayShare == 0.0) return table;
-  // Depths are mixed, not transmittances: a voxel that is dark by only one of them must not become bright as
-  // soon as the other has any weight.
-  const DepthToEye rays = alongRays(block, sigma, direction);
-  return DepthToEye(mix(table.depth, rays.depth, frame.rayShare), mix(table.gradient, rays.gradient, frame.rayShare));
+  return fromTable(block, sigma, directionToEye(block.center));
 }
 
 #endif

@@ -29,7 +29,7 @@ struct Light {
   int atInfinity;
   vec3 color;         // includes the intensity
   uvec2 beyond;       // device address of the output of eye_depths.comp; 0 if the light is outside of the volume
-  FaceRays fans[6];     // kLookupExact: rays from the light, as in SetupFrame
+  FaceRays fans[6];   // kLookupExact: rays from the light, by fanIndex; at infinity six times the same
 };
 
 // The lighting of a frame.
@@ -74,8 +74,7 @@ struct SetupFrame {
   BlockStores stores;
   int levelCount;
   float voxelSize;         // edge of the cube with a voxel's volume, world units
-  int lookup;              // kLookup...
-  float rayShare;          // weight of the exact depth to the eye; the table's has the rest. kLookupExact: 1
+  int lookup;              // kLookup... for the transmittance to the eye
   uvec2 sourceDepth;         // device address of the output of eye_depths.comp; 0 if the eye is outside of the volume
   int pathLengthCorrection;  // 0 if every lattice step has the same length
   int kernelMean;          // 1 if a voxel has the mean transmittance over its kernel along the line of sight
@@ -83,8 +82,7 @@ struct SetupFrame {
   int code;                // kCode...
   int cells;               // that the table's directions divide the cube's half edge into
   vec3 albedo;
-  float emissionUnit;      // radiance per world unit of a stored 1
-  FaceRays fans[6];          // kLookupExact: rays from the eye, by fanIndex; for an orthographic camera six times the same
+  float emissionUnit;  // radiance per world unit of a stored 1
   FrameLighting lighting;
 };
 
@@ -117,13 +115,6 @@ struct ResolvePush {
   vec3 worldRay, worldRayX, worldRayY;   // in world space
   ivec2 size;
   int composite;                         // kComposite...
-};
-
-// tile_opacity.comp
-struct TilePush {
-  ResolvePush rays;
-  float hiddenDepth;   // least optical depth of a covered pixel
-  uvec2 tiles;         // of the image
 };
 
 #ifdef __cplusplus

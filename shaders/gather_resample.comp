@@ -5,9 +5,9 @@
 #extension GL_EXT_samplerless_texture_functions : require
 #include "catmull_rom.glsl"
 #include "gather_frame.glsl"
-#include "gather_resolve.glsl"
 #include "mean_distance.glsl"
 
+layout(constant_id = 0) const bool kWithDistance = false;
 layout(constant_id = 1) const bool kAlongY = false;
 layout(constant_id = 2) const int kTaps = kResampleTaps;
 
@@ -16,6 +16,17 @@ layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
 layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
+layout(binding = 5, rgba32f) writeonly uniform image2D colorImage;
+layout(binding = 6, r32f) writeonly uniform image2D distanceImage;
+
+// Computes a pixel from its sums: Subr et al. 2007, Eq. 10. The transmittance is exact, so E is the pixel's alpha and nothing is normalised;
+// only the interpolation may leave the valid range. A negative distance means that there is none (mean_distance.glsl).
+void resolvePixel(ivec2 pixel, vec4 colorEnergy, float distance) {
+  const float alpha = clamp(colorEnergy.a, 0.0, 1.0);
+  imageStore(colorImage, pixel, vec4(max(colorEnergy.rgb, vec3(0.0)), alpha));
+  if (kWithDistance)
+    imageStore(distanceImage, pixel, vec4(alpha > 0.0 && distance >= 0.0 ? distance / alpha : uintBitsToFloat(0x7f800000u)));
+}
 
 // Sets the weights of kTaps samples, and returns the index of the first one.
 int weightsOf(int pixel, out float weights[kTaps]) {

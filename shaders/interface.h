@@ -49,10 +49,7 @@ FV_CONSTANT int kMaximumLevels = 32;
 FV_CONSTANT int kCutSlotsPerThread = 32;
 FV_CONSTANT int kCutThreads = 64;
 FV_CONSTANT int kCutSlotsPerGroup = kCutSlotsPerThread * kCutThreads;
-// Pixels along the edge of a tile of tile_opacity.comp, and the largest number of cells of a set of
-// directions.
-FV_CONSTANT int kCoverTile = 8;
-FV_CONSTANT int kCoverThreads = 64;
+// The largest number of cells of a set of directions.
 FV_CONSTANT int kMaximumCells = 125;
 
 // The radix sort processes its keys digit by digit. A workgroup has a thread for each value of a digit; the
@@ -94,8 +91,8 @@ FV_CONSTANT int kFilterGeometric = 0;
 FV_CONSTANT int kFilterArithmetic = 1;
 FV_CONSTANT int kLookupBilinear = 0;
 FV_CONSTANT int kLookupNearest = 1;
-FV_CONSTANT int kLookupExact = 2;
-FV_CONSTANT int kLookupNone = 4;  // A = 1. 3 is AttenuationLookup::Auto, which is resolved on the host
+FV_CONSTANT int kLookupExact = 2;  // of lights: along rays that were swept from them
+FV_CONSTANT int kLookupNone = 3;   // A = 1
 FV_CONSTANT int kCompositeNormalised = 0;
 FV_CONSTANT int kCompositeAdditive = 1;
 FV_CONSTANT int kCompositeSorted = 2;
@@ -236,11 +233,9 @@ struct CutFrame {
   int outside;            // whether to leave out blocks outside of the image
   int hides;              // whether to leave out hidden blocks
   float darkDepths[kMaximumCells];  // by cell number: least stored depth that hides, for a line of sight of length 1
-  ivec2 tiles;            // of the image
-  vec2 imageMiddle;       // pixels
   // As in SetupFrame:
-  mat3 indexToWorld, indexToPixel;
-  vec3 eyeToMiddle, middleInPixels;
+  mat3 indexToWorld;
+  vec3 eyeToMiddle;
   vec3 ray;
   int orthographic;
   int pathLengthCorrection, cells;
@@ -252,7 +247,6 @@ struct CutPush {
   int level;
   uint slotCount;      // eight for each block of the list of the level above
   uint firstGroup;     // index of this level's first workgroup among those of all drawn levels
-  uint firstOffset;    // index of its first count among the counts of all workgroups
 };
 
 // Counts of cut_select.comp, of blocks whose parent was opened.
@@ -261,7 +255,6 @@ struct CutCounts {
   uint outside;        // occupied, but outside of the image
   uint hidden;         // inside the image, but hidden
   uint opened;         // not left out, but replaced by their children
-  uint deferred;       // left to the second phase, which counts them again
 };
 
 // expand_voxels.comp
@@ -280,10 +273,8 @@ struct OccupiedBlocksPush {
 struct CompactPush {
   uint firstWord;    // index of the level's first occupancy word
   uint wordCount;
-  uint firstCount;   // compact_scan.comp: index of the first count; their sum is behind the last
   uint groupCount;   // number of workgroups of the count and write passes
-  uint firstChunk;   // first of the chunkCount chunks whose arguments compact_scan.comp writes
-  uint chunkCount;
+  uint chunkCount;   // compact_scan.comp: whose arguments it writes
   uvec2 blocks;      // device address of the list that compact_write.comp writes
 };
 

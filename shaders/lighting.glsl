@@ -22,6 +22,13 @@ struct SeenBlock {
   float surface;   // fraction that is reflected like a surface, 0..1
 };
 
+// The depth at the block's centre. If that lies between two planes, the mean of the line of sight's depths on
+// both.
+vec3 rayDepthOf(FaceRays fan, Block block, vec3 direction) {
+  if (block.extent[fan.axis] % 2 == 1) return rayDepth(fan, block.center);
+  return 0.5 * (rayDepth(fan, block.center + 0.5 * direction) + rayDepth(fan, block.center - 0.5 * direction));
+}
+
 // Gradient of the extinction by central differences, per block of its size, in index space; 0 outside.
 vec3 extinctionGradient(Block block) {
   const BlockLevel level = frame.levels[block.level];

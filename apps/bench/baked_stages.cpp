@@ -42,7 +42,7 @@ Image firstImage(const Device& device, const std::filesystem::path& file, glm::i
   SceneDescription scene;
   scene.input.volume = file.string();
   scene.camera.size = size;
-  FrameSettings settings{.size = size, .draw = Draw::Auto};
+  FrameSettings settings{.size = size};
   const std::shared_ptr<const fvx::FvxFile> baked = scene.input.baked();
   const int opened = level.value_or(baked ? scene.needOf(*baked, 1).level : 0);
   const Scene view = scene.resolve(std::make_shared<const Volume>(scene.readVolume(maximumVoxels(device), opened)));

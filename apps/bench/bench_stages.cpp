@@ -62,7 +62,7 @@ Lighting directionalLights(int count) {
 /// Milliseconds from a volume in memory to its first image of 1024 x 1024 pixels in memory.
 double firstImage(const Device& device, const Volume& volume, const Classification& classification, bool lit,
                   int runs) {
-  FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto};
+  FrameSettings settings{.size = {1024, 1024}};
   if (lit) settings.lighting = directionalLights(1);
   const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   return least(runs, [&] {
@@ -138,9 +138,9 @@ std::vector<Result> zoom(const Device& device, int resolution, int runs) {
   for (const double pixels : {4.0, 1.0, 0.5, 0.25, 0.125})
     for (const float lod : {0.0f, 1.0f}) {
       camera.position = camera.lookAt + size.y * volume.voxelSize() / (height * pixels) * toEye;
-      renderer.render(camera, {.size = size, .lod = lod});  // what is made once
+      renderer.render(camera, {.size = size, .method = SplatSettings{}, .lod = lod});  // what is made once
       const double time = least(runs, [&] {
-        renderer.render(camera, {.size = size, .lod = lod});
+        renderer.render(camera, {.size = size, .method = SplatSettings{}, .lod = lod});
         return passTimes(renderer).total();
       });
       results.push_back({.name = fmt::format("cloud {}^3, {:g} pixels a voxel, --lod {:g}: {} splats",
@@ -157,7 +157,7 @@ std::vector<Result> culling(const Device& device, QualityColor color, int resolu
   const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   std::vector<Result> results;
   for (const bool culled : {false, true}) {
-    const FrameSettings settings{.size = glm::ivec2(1024), .culling = culled};
+    const FrameSettings settings{.size = glm::ivec2(1024), .method = SplatSettings{.culling = culled}};
     renderer.render(camera, settings);  // what is made once
     PassTimes best;
     least(runs, [&] {
@@ -184,7 +184,8 @@ std::vector<Result> frames(const Device& device, std::string_view name, int reso
   std::vector<Result> results;
   for (const bool lit : {false, true})
     for (const Draw draw : {Draw::Gather, Draw::Splats}) {
-      FrameSettings settings{.size = {1024, 1024}, .draw = draw};
+      FrameSettings settings{.size = {1024, 1024}};
+      if (draw == Draw::Splats) settings.method = SplatSettings{};
       if (lit) settings.lighting = directionalLights(1);
       renderer.render(camera, settings);  // what is made once
       const double time = least(runs, [&] { return millisecondsOf([&] { renderer.render(camera, settings); }); });
@@ -205,7 +206,7 @@ Result turntable(const Device& device, std::string_view name, int resolution, gl
       {head ? "head" : "cloud", head ? QualityColor::Bone : QualityColor::Cloud, false}, resolution,
       makeProcedural(std::string(name), resolution));
   Renderer renderer(device, scene.volume, scene.classification, {});
-  FrameSettings settings{.size = size, .draw = Draw::Auto};
+  FrameSettings settings{.size = size};
   if (lights > 0) settings.lighting = directionalLights(lights);
   const auto cameraOf = [&](int frame) {
     return framingCamera(scene.volume, kDefaultAzimuth + 5.0 * frame, kDefaultElevation, double(size.x) / size.y, {});
@@ -227,7 +228,7 @@ std::vector<Result> lights(const Device& device, int resolution, int runs) {
   const Camera camera = framingCamera(volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   std::vector<Result> results;
   const auto measure = [&](int count, LightAttenuation attenuation) {
-    FrameSettings settings{.size = {1024, 1024}, .draw = Draw::Auto, .lighting = directionalLights(count)};
+    FrameSettings settings{.size = {1024, 1024}, .lighting = directionalLights(count)};
     settings.lighting->attenuation = attenuation;
     const double time = least(runs, [&] {
       std::vector<StageTime> times;
@@ -278,7 +279,7 @@ Result splats(const Device& device, double pixels, int runs) {
   const glm::ivec3 dimensions(316, 316, 5);
   const Volume volume = unitVoxels(dimensions, [](int, int, int) { return 1.0f; });
   Renderer renderer(device, volume, {.densityScale = 0.1}, {});
-  const FrameSettings settings{.size = {1024, 1024}};
+  const FrameSettings settings{.size = {1024, 1024}, .method = SplatSettings{}};
   Camera camera;
   camera.lookAt = 0.5 * glm::dvec3(dimensions - 1);
   camera.position = camera.lookAt + glm::dvec3(0.0, 0.0, 100.0);
@@ -315,7 +316,7 @@ std::vector<Result> flight(const Device& device, int resolution, int runs) {
   constexpr int kFrames = 12;
   const Volume volume = makeProcedural("cloud", resolution);
   Renderer renderer(device, volume, {.densityScale = automaticDensityScale(volume, 2.0)}, {});
-  const FrameSettings settings{.size = {512, 512}, .draw = Draw::Auto};
+  const FrameSettings settings{.size = {512, 512}};
   double sum[2] = {0.0, 0.0};
   int frames[2] = {0, 0};
   for (const Camera& camera : flyThrough(volume, kFrames)) {

@@ -257,7 +257,7 @@ void FrameSeries::drawShares(Renderer& renderer, const Scene& view, const FrameS
     const StageTimer timer(report_.stages, "write images");
     writer_.writeSums(sums, view, job);
   } else {
-    complete(resolveSums(sums, settings.composite == Composite::Normalised), isTransparent(renderer), view, job);
+    complete(resolveSums(sums, settings.isNormalised()), isTransparent(renderer), view, job);
   }
 }
 
@@ -267,8 +267,7 @@ void FrameSeries::finishAddingUp() {
   const AddedUp added = addingUp_.result.get();
   addTimes(report_.stages, added.times);
   if (!added.sums) return;
-  const bool normalised = options_.frameSettings().composite == Composite::Normalised;
-  complete(resolveSums(*added.sums, normalised), addingUp_.isTransparent, addingUp_.view, *addingUp_.job);
+  complete(resolveSums(*added.sums, options_.frameSettings().isNormalised()), addingUp_.isTransparent, addingUp_.view, *addingUp_.job);
 }
 
 void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job) {
@@ -302,7 +301,6 @@ void FrameSeries::writeEmpty(const FrameJob& job) {
 
 /// The report describes the last volume.
 void FrameSeries::report(const Renderer& renderer, const Volume& volume) {
-  report_.lackedRoomForRays |= renderer.lackedRoomForRays();
   logCubes(renderer);
   report_.visibleVoxels = renderer.occupiedVoxelCount();
   report_.voxels = volume.voxelCount();

@@ -101,13 +101,12 @@ const std::vector<OptionHelp> kMethodHelp{
      "blending for comparison [normalised]",
      true},
     {"draw",
-     "How the volume becomes the image: gather marches rays through it, splats draws a billboard for every voxel; auto: gather "
-     "if --attenuation is auto or exact and --composite is not sorted, else splats [auto]",
+     "How the volume becomes the image: gather marches rays through it, splats draws a billboard for every voxel, as the paper "
+     "does [splats with --paper, --attenuation or another --composite than normalised, else gather]",
      true},
     {"attenuation",
-     "Transmittance of splats to the eye: interpolated between four directions of the table, its nearest direction, or exact, "
-     "along rays from the eye that are swept for every frame; auto: exact for volumes with emission and if the eye is inside "
-     "the volume, bilinear if it is far away, a mix in between [auto]",
+     "Transmittance of splats to the eye: interpolated between four directions of the table, or that of its nearest direction "
+     "[bilinear]",
      true},
     {"directions", "Directions of the table; 98 are more exact and take more memory and time [26]", true},
     {"code", "What a byte of the table holds: optical depth or transmittance [depth8]", true},
@@ -117,8 +116,11 @@ const std::vector<OptionHelp> kMethodHelp{
      "Size on the image up to which blocks of voxels are drawn as one element; 0 always draws voxels, as does --composite "
      "sorted [1]",
      true},
-    {"culling", "Whether blocks outside of the image or hidden by others are left out; --composite sorted draws all [yes]", true},
-    {"cull-threshold", "Transmittance to the eye below which a block is hidden, and a ray of the gather ends; 0 hides nothing [1/512]",
+    {"culling", "Whether splats outside of the image are left out, and rays of the gather end early; --composite sorted draws all [yes]",
+     true},
+    {"cull-threshold",
+     "Transmittance to the eye at which a ray of the gather ends [1/512], and below which the table hides blocks of splats [0]; 0 leaves "
+     "nothing out",
      true},
     {"hierarchy-filter", "Mean of its voxels' transmittances that a block has [geometric]", true},
     {"paper",

@@ -56,8 +56,7 @@ void checkRanks(int ranks) {
 }
 
 FrameSettings sharedSettings(FrameSettings settings) {
-  if (settings.composite == Composite::Sorted)
-    fail(ErrorKind::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");
+  if (settings.isSorted()) fail(ErrorKind::Usage, "a sorted image cannot be divided into shares: leave --composite sorted out");
   return settings;
 }
 

@@ -20,7 +20,6 @@ void logOptions(const OptionList& options) {
 namespace {
 
 void logCounts(const RunReport& report) {
-  if (report.lackedRoomForRays) spdlog::debug("exact transmittance needs more memory than the device has: looked up in the table instead");
   spdlog::debug("{} voxels; at most {:.1f} MiB on the device", report.voxels, double(report.devicePeak) / 0x1p20);
   if (report.visibleVoxels) {
     const auto stored = double(report.memory.stored());

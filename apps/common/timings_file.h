@@ -27,7 +27,6 @@ struct RunReport {
   VolumeMemory memory;
   std::uint64_t devicePeak = 0;    ///< largest number of bytes allocated on the device at any time
   CutCounts cut;                   ///< cut of the last frame
-  bool lackedRoomForRays = false;  ///< for any frame
 };
 
 /// Prints the messages of --verbose.

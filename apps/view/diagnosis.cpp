@@ -59,7 +59,7 @@ Image greyImage(const std::vector<SplatSums>& sums, glm::ivec2 size, double (*br
 
 Image sumsImage(Shown shown, Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
   FrameSettings ordered = settings;
-  if (ordered.composite == Composite::Sorted) ordered.composite = Composite::Normalised;  // which has no sums
+  if (settings.gathers() || settings.isSorted()) ordered.method = SplatSettings{};  // which alone have sums
   const std::vector<SplatSums> sums = RendererStages(renderer).renderSums(camera, ordered);
   if (shown == Shown::Transmittance)
     return greyImage(
@@ -73,7 +73,7 @@ Image sumsImage(Shown shown, Renderer& renderer, const Camera& camera, const Fra
 Image blocksImage(const std::optional<Camera>& chosenFor, Renderer& renderer, const Volume& volume,
                     const Camera& camera, const FrameSettings& settings) {
   FrameSettings splats = settings;
-  splats.draw = Draw::Splats;  // the gather chooses no blocks
+  if (settings.gathers()) splats.method = SplatSettings{};  // the gather chooses no blocks
   renderer.render(chosenFor.value_or(camera), splats);
   const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
   std::vector<PaintedBlock> painted;
@@ -209,7 +209,7 @@ Image Diagnoser::drawTable(int direction, Renderer& renderer, const Volume& volu
     tableRenderer_ = std::make_unique<Renderer>(device_, tableVolume_, classification, table);
     tableDirection_ = direction;
   }
-  Image image = tableRenderer_->render(camera, {.size = size});
+  Image image = tableRenderer_->render(camera, {.size = size, .method = SplatSettings{}});
   for (glm::vec4& pixel : image.pixels) pixel += glm::vec4((1.0f - pixel.a) * kNothingThere, 1.0f - pixel.a);
   return image;
 }

@@ -17,17 +17,22 @@ namespace {
 
 constexpr double kMinThreshold = 1e-5, kMaxThreshold = 0.1;
 
+/// What is not given comes to.
 struct Usual {
   TableSettings table;
-  FrameSettings frame;
+  SplatSettings splats;
+  double lod = 0.0, threshold = 0.0;
 };
 
-/// What is not given comes to.
-Usual usualOf(bool paper) {
-  const MethodDescription none{.paper = paper};
-  Usual usual{.table = none.table()};
-  none.apply(usual.frame);
-  return usual;
+Usual usualOf(const MethodDescription& method) {
+  const MethodDescription none{.paper = method.paper, .draw = Draw::Splats};
+  FrameSettings frame;
+  none.apply(frame);
+  const bool gathers = method.drawing() == Draw::Gather;
+  return {.table = none.table(),
+          .splats = frame.splats(),
+          .lod = double(frame.lod),
+          .threshold = double(gathers ? GatherSettings{}.endTransmittance : frame.splats().cullThreshold)};
 }
 
 bool drawPaper(MethodDescription& method) {
@@ -52,20 +57,20 @@ bool drawTable(MethodDescription& method, const TableSettings& usual) {
   return changed;
 }
 
-bool drawDetail(MethodDescription& method, const FrameSettings& usual) {
-  bool changed = tick("Gradient in splats", method.gradient, usual.gradient);
+bool drawDetail(MethodDescription& method, const Usual& usual) {
+  bool changed = tick("Gradient in splats", method.gradient, usual.splats.gradient);
   hint("Transmittance varies across a splat", "--gradient");
-  changed |= slideOptional("Level of detail", method.lod, double(usual.lod), 0.0, 8.0, "%.2g px");
+  changed |= slideOptional("Level of detail", method.lod, usual.lod, 0.0, 8.0, "%.2g px");
   hint("Blocks up to so many pixels wide are drawn as one", "--lod");
-  changed |= tick("Occlusion culling", method.culling, usual.culling);
-  hint("Leaves out blocks outside of the image or behind others", "--culling");
-  ImGui::BeginDisabled(!method.culling.value_or(usual.culling));
-  double threshold = method.cullThreshold.value_or(double(usual.cullThreshold));
+  changed |= tick("Culling", method.culling, usual.splats.culling);
+  hint("Leaves out blocks outside of the image, and the rest of rays that nothing shows behind", "--culling");
+  ImGui::BeginDisabled(!method.culling.value_or(usual.splats.culling));
+  double threshold = std::max(method.cullThreshold.value_or(usual.threshold), kMinThreshold);
   if (slideLogarithmic("Cull threshold", threshold, kMinThreshold, kMaxThreshold)) {
     method.cullThreshold = threshold;
     changed = true;
   }
-  hint("Share of a block's light that reaches the eye, below which it is left out", "--cull-threshold");
+  hint("Share of the light that reaches the eye, below which blocks are left out and rays end", "--cull-threshold");
   ImGui::EndDisabled();
   return changed;
 }
@@ -197,8 +202,7 @@ void drawBlockControls(ViewState& state) {
 }
 
 void drawComparison(ViewState& state) {
-  static constexpr std::array kNames{"nothing", "sorted splats", "the paper's method", "exact rays",
-                                     "every voxel, no culling"};
+  static constexpr std::array kNames{"nothing", "sorted splats", "the paper's method", "splats", "every voxel, no culling"};
   int chosen = state.comparison;
   if (!ImGui::BeginCombo(beginRow("Compare with"), kNames[std::size_t(chosen)])) return;
   for (int i = 0; i < int(kNames.size()); ++i)
@@ -244,22 +248,23 @@ void drawFigures(const DrawnImage& drawn) {
 void drawMethod(ViewState& state) {
   if (!ImGui::TreeNode("Method")) return;
   MethodDescription& method = state.scene.method;
-  bool changed = choose("Draw", kDrawWords, method.draw, Draw::Auto);
-  hint("By gathering samples along rays, or by splats; auto: gathering where it is possible", "--draw");
-  const bool gathers = method.draw == Draw::Gather;
-  if (gathers) {
+  bool changed = choose("Draw", kDrawWords, method.draw, method.drawing());
+  hint("By gathering samples along rays, or by splats, as the paper does", "--draw");
+  if (method.draw == Draw::Gather) {
+    method.paper = false;
     method.composite.reset();
     method.attenuation.reset();
+    method.draw.reset();
   }
   changed |= drawPaper(method);
-  const Usual usual = usualOf(method.paper);
-  changed |= choose("Composite", kCompositeWords, method.composite, usual.frame.composite);
+  const Usual usual = usualOf(method);
+  changed |= choose("Composite", kCompositeWords, method.composite, usual.splats.composite);
   hint("How splats become an image; sorted is classic splatting", "--composite");
   const bool sorted = method.composite == Composite::Sorted;
-  ImGui::BeginDisabled(sorted || gathers);
-  changed |= choose("Attenuation", kAttenuationWords, method.attenuation, usual.frame.attenuation);
-  hint("Transmittance to the eye: from the table, or exact by rays", "--attenuation");
-  changed |= drawDetail(method, usual.frame);
+  ImGui::BeginDisabled(sorted);
+  changed |= choose("Attenuation", kAttenuationWords, method.attenuation, usual.splats.attenuation);
+  hint("Transmittance of splats to the eye: from four directions of the table, or its nearest one", "--attenuation");
+  changed |= drawDetail(method, usual);
   ImGui::EndDisabled();
   changed |= drawTable(method, usual.table);
   if (ImGui::Button("Back to the defaults")) {

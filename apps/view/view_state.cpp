@@ -9,12 +9,13 @@ std::optional<MethodDescription> ViewState::comparedMethod() const {
   MethodDescription other = scene.method;
   switch (comparison) {
     case 1:
+      other.draw = Draw::Splats;
       other.composite = Composite::Sorted;
       return other;
     case 2:
       return MethodDescription{.paper = true};
     case 3:
-      other.attenuation = AttenuationLookup::Exact;
+      other = {.draw = Draw::Splats};
       return other;
     case 4:
       other.lod = 0.0;

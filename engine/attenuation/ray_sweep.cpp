@@ -96,7 +96,7 @@ void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostByte
     fail(ErrorKind::OutOfMemory,
          "exact transmittance needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
          "{}, or a smaller volume",
-         room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20, Parameter("attenuation", "bilinear"));
+         room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20, Parameter("light-attenuation", "table"));
 }
 
 }  // namespace
@@ -124,10 +124,10 @@ RaySweep::RaySweep(const Device& device, const char* name)
       name_(name),
       expand_(device) {}
 
-void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source, std::uint64_t mostBytes) {
+void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source) {
   const RayRoom room = roomFor(faceRays(dimensions, source), dimensions);
   const std::uint64_t own = depths_.bytes() + slab_.bytes() + carried_.bytes();
-  checkFits(device_, room, std::min(mostBytes, device_.availableBytes() + own));
+  checkFits(device_, room, device_.availableBytes() + own);
   const auto grow = [&](Buffer& buffer, std::uint64_t bytes, const char* name, VkBufferUsageFlags usage = 0) {
     if (buffer.bytes() >= bytes) return false;
     buffer = {};  // free the old buffer before allocating the new one

@@ -4,7 +4,6 @@
 // reading its extinction, and four rays share each voxel.
 
 #include <cstdint>
-#include <limits>
 #include <optional>
 
 #include "engine/octree/device_volume.h"
@@ -27,11 +26,8 @@ class RaySweep {
   /// `name` is the pass that its time is reported as.
   explicit RaySweep(const Device& device, const char* name = "ray sweep");
 
-  /// Allocates memory for the depths of a source, at most `mostBytes`; fails with ErrorKind::OutOfMemory if it
-  /// is not enough. No work on the depths of the last source may be in progress.
-  void makeRoom(glm::ivec3 dimensions, const RaySource& source,
-                std::uint64_t mostBytes = std::numeric_limits<std::uint64_t>::max());
-  /// Records the sweep for a source; its depths replace those of the last one. Allocates memory if necessary.
+  /// Records the sweep for a source; its depths replace those of the last one, on which no work may be in progress. Allocates memory if
+  /// necessary; fails with ErrorKind::OutOfMemory if there is not enough.
   /// With `scalars`, extinction is classified from the volume's scalars after interpolation, and the depths
   /// are those up to the planes of voxels instead of those in front of their layers.
   void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false);
@@ -45,6 +41,7 @@ class RaySweep {
   RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
 
  private:
+  void makeRoom(glm::ivec3 dimensions, const RaySource& source);
   void recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
                  const shader::FaceRays& onDevice, bool scalars) const;
   void recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const;

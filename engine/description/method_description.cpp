@@ -10,17 +10,32 @@ TableSettings MethodDescription::table() const {
           .filter = hierarchyFilter.value_or(HierarchyFilter::Geometric)};
 }
 
+bool MethodDescription::hasOptionsOfSplats() const {
+  return paper || attenuation || composite.value_or(Composite::Normalised) != Composite::Normalised;
+}
+
+Draw MethodDescription::drawing() const {
+  return draw.value_or(hasOptionsOfSplats() ? Draw::Splats : Draw::Gather);
+}
+
 void MethodDescription::apply(FrameSettings& frame) const {
-  frame.draw = draw.value_or(Draw::Auto);
-  frame.composite = composite.value_or(paper ? Composite::Additive : Composite::Normalised);
-  frame.attenuation = attenuation.value_or(paper ? AttenuationLookup::Nearest : AttenuationLookup::Auto);
-  if (frame.draw == Draw::Gather && !canGather(frame))
-    fail(ErrorKind::Usage, "{} computes exact transmittance and no sorted image: leave {} and {} out, or use {}",
-         Parameter("draw", "gather"), Parameter("attenuation"), Parameter("composite"), Parameter("draw", "splats"));
-  frame.gradient = gradient.value_or(!paper);
   frame.lod = float(lod.value_or(paper ? 0.0 : 1.0));
-  frame.culling = culling.value_or(!paper);
-  frame.cullThreshold = float(cullThreshold.value_or(double(frame.cullThreshold)));
+  if (drawing() == Draw::Gather) {
+    if (hasOptionsOfSplats())
+      fail(ErrorKind::Usage, "{} computes exact transmittance and has nothing of the paper's method: leave {}, {} and {} out, or use {}",
+           Parameter("draw", "gather"), Parameter("paper"), Parameter("attenuation"), Parameter("composite"), Parameter("draw", "splats"));
+    GatherSettings gather;
+    gather.endTransmittance = culling.value_or(true) ? float(cullThreshold.value_or(double(gather.endTransmittance))) : 0.0f;
+    frame.method = gather;
+    return;
+  }
+  SplatSettings splats;
+  splats.composite = composite.value_or(paper ? Composite::Additive : Composite::Normalised);
+  splats.attenuation = attenuation.value_or(paper ? AttenuationLookup::Nearest : AttenuationLookup::Bilinear);
+  splats.gradient = gradient.value_or(!paper);
+  splats.culling = culling.value_or(!paper);
+  splats.cullThreshold = float(cullThreshold.value_or(double(splats.cullThreshold)));
+  frame.method = splats;
 }
 
 }  // namespace freevoxels

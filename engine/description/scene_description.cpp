@@ -77,17 +77,24 @@ MethodDescription resolvedMethod(const MethodDescription& given) {
   FrameSettings frame;
   given.apply(frame);
   const TableSettings table = given.table();
-  return {.draw = frame.draw,
-          .composite = frame.composite,
-          .attenuation = frame.attenuation,
-          .directions = table.directions,
-          .code = table.code,
-          .pathLengthCorrection = table.pathLengthCorrection,
-          .gradient = frame.gradient,
-          .lod = given.lod.value_or(double(frame.lod)),
-          .culling = frame.culling,
-          .cullThreshold = given.cullThreshold.value_or(double(frame.cullThreshold)),
-          .hierarchyFilter = table.filter};
+  MethodDescription result{.draw = Draw::Gather,
+                           .directions = table.directions,
+                           .code = table.code,
+                           .pathLengthCorrection = table.pathLengthCorrection,
+                           .lod = given.lod.value_or(double(frame.lod)),
+                           .hierarchyFilter = table.filter};
+  if (frame.gathers()) {
+    result.cullThreshold = given.culling.value_or(true) ? given.cullThreshold.value_or(double(frame.gather().endTransmittance)) : 0.0;
+    return result;
+  }
+  const SplatSettings& splats = frame.splats();
+  result.draw = Draw::Splats;
+  result.composite = splats.composite;
+  result.attenuation = splats.attenuation;
+  result.gradient = splats.gradient;
+  result.culling = splats.culling;
+  result.cullThreshold = given.cullThreshold.value_or(double(splats.cullThreshold));
+  return result;
 }
 
 }  // namespace

@@ -182,7 +182,7 @@ double defaultIntensity(const Light& light, const Volume& volume);
 /// The method of drawing, in which the paper and FreeVoxels differ. What is not given is the default of FreeVoxels, or the paper's.
 struct MethodDescription {
   bool paper = false;  ///< the paper's side of composite, attenuation, directions, code, path length, gradient, lod and culling
-  std::optional<Draw> draw;
+  std::optional<Draw> draw;  ///< else by drawing()
   std::optional<Composite> composite;
   std::optional<AttenuationLookup> attenuation;
   std::optional<DirectionSet> directions;
@@ -194,7 +194,11 @@ struct MethodDescription {
   std::optional<HierarchyFilter> hierarchyFilter;
 
   TableSettings table() const;
-  /// Fails where the gather is asked for and cannot draw so.
+  /// Whether `paper`, `attenuation` or another composite than Normalised is given.
+  bool hasOptionsOfSplats() const;
+  /// `draw`, or if it is not given Splats with options of theirs, else Gather.
+  Draw drawing() const;
+  /// Fails where gathering is asked for with options of splats.
   void apply(FrameSettings& frame) const;
 
   bool operator==(const MethodDescription&) const = default;

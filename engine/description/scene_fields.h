@@ -25,9 +25,9 @@ struct Words {
 inline const Words<ClassificationOrder> kOrderWords{{"post", "pre"}};
 inline const Words<Shading> kShadingWords{{"auto", "scatter", "gradient"}};
 inline const Words<LightAttenuation> kLightAttenuationWords{{"table", "exact", "auto"}};
-inline const Words<Draw> kDrawWords{{"auto", "gather", "splats"}};
+inline const Words<Draw> kDrawWords{{"gather", "splats"}};
 inline const Words<Composite> kCompositeWords{{"normalised", "additive", "sorted"}};
-inline const Words<AttenuationLookup> kAttenuationWords{{"bilinear", "nearest", "exact", "auto"}};
+inline const Words<AttenuationLookup> kAttenuationWords{{"bilinear", "nearest"}};
 inline const Words<DirectionSet> kDirectionWords{{"26", "98"}, 1};
 inline const Words<AttenuationCode> kCodeWords{{"depth8", "linear8"}};
 inline const Words<HierarchyFilter> kHierarchyFilterWords{{"geometric", "arithmetic"}};

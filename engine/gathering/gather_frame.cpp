@@ -239,7 +239,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .coarsest = detail.coarsest,
                             .size = settings.size,
                             .pitch = float(pitch),
-                            .sampleTolerance = adapts ? settings.sampleTolerance : 0.0f,
+                            .sampleTolerance = adapts ? settings.gather().sampleTolerance : 0.0f,
                             .distanceTolerance = float(kSmoothVoxels * volume.voxelSize),
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,

@@ -121,18 +121,17 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
   }
   placed_ = lighting;
   placedScalars_ = scalars;
-  const int ofTable =
-      settings.attenuation == AttenuationLookup::Nearest ? shader::kLookupNearest : shader::kLookupBilinear;
-  shader::FrameLighting frame{.lightCount = int(lighting.lights.size()),
-                              .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : ofTable,
-                              .hasAmbient = lighting.hasAmbient() ? 1 : 0,
-                              .tint = lighting.tint,
-                              .phaseG = float(lighting.phaseG),
-                              .surface = float(lighting.surface),
-                              .octaves = lighting.scattering,
-                              .octaveScale = float(lighting.scatteringScale),
-                              .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld))),
-                              .scalars = volume.scalarBricks ? volume.scalarBricks->onDevice() : shader::CodeBricks()};
+  shader::FrameLighting frame{
+      .lightCount = int(lighting.lights.size()),
+      .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : int(settings.tableLookup()),
+      .hasAmbient = lighting.hasAmbient() ? 1 : 0,
+      .tint = lighting.tint,
+      .phaseG = float(lighting.phaseG),
+      .surface = float(lighting.surface),
+      .octaves = lighting.scattering,
+      .octaveScale = float(lighting.scatteringScale),
+      .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld))),
+      .scalars = volume.scalarBricks ? volume.scalarBricks->onDevice() : shader::CodeBricks()};
   for (int i = 0; i < directionCount(set); ++i)
     frame.ambientByDirection[cellNumber(set, directionCell(set, i))] = glm::vec4(fromAll_[std::size_t(i)]);
   return frame;

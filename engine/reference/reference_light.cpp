@@ -25,9 +25,7 @@ ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& s
       toWorld_(inputs.volume.indexToWorld),
       fromAll_(directionLight(lighting_, inputs.tableSettings.directions, inputs.volume.indexToWorld)),
       shares_(directionShares(inputs.tableSettings.directions, inputs.volume.indexToWorld)) {
-  const AttenuationLookup lookup = settings.attenuation == AttenuationLookup::Nearest
-                                       ? AttenuationLookup::Nearest
-                                       : AttenuationLookup::Bilinear;
+  const AttenuationLookup lookup = settings.tableLookup();
   for (const Light& light : lighting_.lights) {
     const RaySource source = lightSource(light, inputs_.volume.indexToWorld);
     sources_.push_back(source);

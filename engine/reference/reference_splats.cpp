@@ -16,7 +16,6 @@
 #include "engine/reference/projected_splats.h"
 #include "engine/reference/reference_depth.h"
 #include "engine/reference/reference_light.h"
-#include "engine/reference/reference_rays.h"
 #include "engine/volume/voxel_classifier.h"
 
 namespace freevoxels {
@@ -61,9 +60,7 @@ class SplatSummer {
         inputs_(inputs),
         settings_(settings),
         projector_(volume, camera, settings.size),
-        rayShare_(rayShare(lookupFor(settings.attenuation, !inputs.emission.empty()), camera, volume.dimensions, volume.indexToWorld)),
-        rays_(rayShare_ > 0.0 ? raysFor(camera) : nullptr),
-        table_(rayShare_ < 1.0 ? tableFor(camera) : nullptr),
+        table_(tableFor(camera)),
         codes_(codesFor()),
         light_(lightFor()) {
     FV_CHECK_EQ(inputs.extinction.size(), volume.voxelCount());
@@ -75,7 +72,6 @@ class SplatSummer {
   Block voxel(std::uint32_t index) const { return projector_.voxel(index); }
 
  private:
-  std::unique_ptr<ReferenceDepth> raysFor(const Camera& camera) const;
   std::unique_ptr<ReferenceDepth> tableFor(const Camera& camera) const;
   std::optional<TransferTable> codesFor() const;
   std::unique_ptr<ReferenceLight> lightFor() const;
@@ -89,8 +85,6 @@ class SplatSummer {
   glm::dvec3 colorOf(const Block& block) const;
   glm::dvec3 centreOfMass(const Block& block) const;
   DepthToEye depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const;
-  DepthToEye depthBy(const ReferenceDepth& depths, const Block& block, const ProjectedSplat& splat,
-                     double extinction, int layers) const;
   double extinctionAt(glm::dvec3 position, int axis) const;
   double leaving(const Block& block, const ProjectedSplat& splat, double extinction, double inFront) const;
 
@@ -100,23 +94,15 @@ class SplatSummer {
   const SplatInputs& inputs_;
   const FrameSettings& settings_;
   const SplatProjector projector_;
-  const double rayShare_;
-  const std::unique_ptr<ReferenceDepth> rays_, table_;  ///< null if their weight is 0
-  const std::optional<TransferTable> codes_;            ///< of scalars that are classified after interpolation
-  const std::unique_ptr<ReferenceLight> light_;         ///< null without lighting
+  const std::unique_ptr<ReferenceDepth> table_;
+  const std::optional<TransferTable> codes_;     ///< of scalars that are classified after interpolation
+  const std::unique_ptr<ReferenceLight> light_;  ///< null without lighting
 };
-
-std::unique_ptr<ReferenceDepth> SplatSummer::raysFor(const Camera& camera) const {
-  const RaySource eye = eyeSource(camera, volume_.indexToWorld);
-  return rayDepth(volume_, eye,
-                  inputs_.rays != nullptr ? *inputs_.rays : referenceRays(volume_, inputs_.extinction, eye));
-}
 
 std::unique_ptr<ReferenceDepth> SplatSummer::tableFor(const Camera& camera) const {
   const bool inside = eyeIsInside(camera, volume_.dimensions, volume_.indexToWorld);
   return tableDepth(
-      volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings,
-      settings_.attenuation == AttenuationLookup::Auto ? AttenuationLookup::Bilinear : settings_.attenuation,
+      volume_, inputs_.extinction, inputs_.table, inputs_.coarser, inputs_.tableSettings, settings_.splats().attenuation,
       [this](glm::dvec3 position) { return projector_.toEye(position); },
       inside ? std::optional(eyeSource(camera, volume_.indexToWorld).place) : std::nullopt, inputs_.emission);
 }
@@ -163,26 +149,14 @@ glm::dvec3 SplatSummer::centreOfMass(const Block& block) const {
   return masses > 0.0 ? sum / masses : projector_.box(block).centre();
 }
 
-/// The depth mixed from that of rays and that of the table, by their weights.
-DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction,
-                                   int layers) const {
-  if (!table_) return depthBy(*rays_, block, splat, extinction, layers);
-  DepthToEye depth = depthBy(*table_, block, splat, extinction, layers);
-  if (!rays_) return depth;
-  const DepthToEye ofRays = depthBy(*rays_, block, splat, extinction, layers);
-  depth.centre = glm::mix(depth.centre, ofRays.centre, rayShare_);
-  depth.perPixel = glm::mix(depth.perPixel, ofRays.perPixel, rayShare_);
-  return depth;
-}
-
-DepthToEye SplatSummer::depthBy(const ReferenceDepth& depths, const Block& block, const ProjectedSplat& splat,
-                                double extinction, int layers) const {
+DepthToEye SplatSummer::depthToEye(const Block& block, const ProjectedSplat& splat, double extinction, int layers) const {
+  const ReferenceDepth& depths = *table_;
   // The mean depth of a block is that of its middle layer: the layers of the block in front of that are
   // subtracted.
   const double layer = projector_.layerLength(splat), unsaturated = depths.unsaturated(block) * extinction;
   const double before = 0.5 * (layers - 1) * unsaturated * depths.countedLength(layer);
   DepthToEye depth{.centre = std::max(depths.at(block) - before, 0.0)};
-  if (!settings_.gradient) return depth;
+  if (!settings_.splats().gradient) return depth;
   if (splat.cut) {
     depth.perLength = extinction;
     depth.distance = projector_.distanceFromEye(splat);
@@ -233,8 +207,7 @@ void SplatSummer::add(const Block& block, std::vector<SplatSums>& image) const {
   const glm::dvec3 albedo = colorOf(block), emission = emissionOf(block);
   const int layers = projector_.box(block).extent[majorAxis(splat->toEye)];
   const DepthToEye depth = depthToEye(block, *splat, sigma, layers);
-  const bool ofKernel =
-      settings_.gradient && settings_.composite == Composite::Normalised && block.level == 0;
+  const bool ofKernel = settings_.splats().gradient && settings_.splats().composite == Composite::Normalised && block.level == 0;
   const double leaving = ofKernel ? this->leaving(block, *splat, sigma, depth.centre)
                                   : projector_.leaving(*splat, sigma, layers);
   const glm::dvec3 radiance = light_ ? albedo * light_->scattered(block, splat->toEye) : albedo;
@@ -304,7 +277,7 @@ Image referenceResolve(const std::vector<SplatSums>& sums, const FrameSettings& 
   image.size = settings.size;
   for (const SplatSums& sum : sums) {
     const double opacity = -std::expm1(-sum.depth);
-    const bool normalised = settings.composite == Composite::Normalised;
+    const bool normalised = settings.splats().composite == Composite::Normalised;
     const double factor = normalised && sum.energy > 0.0 ? opacity / sum.energy : 1.0;
     image.pixels.emplace_back(sum.color * factor, normalised ? opacity : sum.energy);
     if (settings.depth)

@@ -11,7 +11,6 @@
 #include "engine/octree/level_data.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
-#include "engine/scene/source_rays.h"
 #include "engine/scene/table_settings.h"
 #include "engine/splatting/splat_sums.h"
 #include "engine/volume/classification.h"
@@ -26,7 +25,6 @@ struct SplatInputs {
   TableSettings tableSettings;
   std::span<const LevelData> coarser = {};    ///< levels above the voxels, up to the coarsest that is drawn
   std::span<const glm::dvec3> emission = {};  ///< for every voxel; empty if none emits light
-  const RayCodes* rays = nullptr;  ///< depths along rays from the camera's eye; null to compute them
 };
 
 /// Sums over the listed voxels (indices, Volume::at), in that order.

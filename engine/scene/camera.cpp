@@ -177,23 +177,6 @@ bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& 
   return isInside(eyeSource(camera, indexToWorld), dimensions);
 }
 
-double rayShare(AttenuationLookup lookup, const Camera& camera, glm::ivec3 dimensions,
-                const glm::dmat4& indexToWorld) {
-  if (lookup == AttenuationLookup::Exact) return 1.0;
-  if (lookup != AttenuationLookup::Auto || camera.orthographic) return 0.0;
-  if (eyeIsInside(camera, dimensions, indexToWorld)) return 1.0;
-  // Distances along the box's axes, treated as if the axes were at right angles.
-  const glm::dvec3 extent(dimensions), eye = eyeSource(camera, indexToWorld).place + 0.5;
-  glm::dvec3 beyond = glm::max(glm::max(-eye, eye - extent), 0.0);
-  double longest = 0.0;
-  for (int axis = 0; axis < 3; ++axis) {
-    const double length = glm::length(glm::dvec3(indexToWorld[axis]));
-    beyond[axis] *= length;
-    longest = std::max(longest, extent[axis] * length);
-  }
-  return std::max(1.0 - glm::length(beyond) / (kNearBox * longest), 0.0);
-}
-
 PixelRays PixelRays::countedFrom(glm::dvec2 position) const {
   PixelRays moved = *this;
   moved.origin += position.x * originX + position.y * originY;

@@ -77,23 +77,6 @@ RaySource eyeSource(const Camera& camera, const glm::dmat4& indexToWorld);
 /// Whether the eye is inside the volume's box, faces included. Always false for an orthographic camera.
 bool eyeIsInside(const Camera& camera, glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
 
-/// An eye counts as near if its distance to the volume's box is at most this fraction of the box's longest
-/// edge.
-inline constexpr double kNearBox = 0.5;
-
-/// Resolves Auto for a volume with emission to Exact: behind smoke, the table's error is multiplied by the
-/// brightness of a flame.
-inline AttenuationLookup lookupFor(AttenuationLookup lookup, bool shines) {
-  return lookup == AttenuationLookup::Auto && shines ? AttenuationLookup::Exact : lookup;
-}
-
-/// The weight of the exact optical depth to the eye; the table's has the rest. 1 for Exact and 0 for the
-/// look-ups of the table. For Auto it is 1 for an eye inside the box, since the table counts from the
-/// outside, and falls linearly with the distance to 0 where the eye is no longer near, so that no step is
-/// visible.
-double rayShare(AttenuationLookup lookup, const Camera& camera, glm::ivec3 dimensions,
-                const glm::dmat4& indexToWorld);
-
 PixelRays pixelRays(const Camera& camera, glm::ivec2 imageSize, const glm::dmat4& indexToWorld);
 
 }  // namespace freevoxels

@@ -1,10 +1,9 @@
 #pragma once
 // The settings of a frame apart from camera and classification.
 
-#include <cstdint>
 #include <glm/glm.hpp>
-#include <limits>
 #include <optional>
+#include <variant>
 
 #include "engine/scene/lighting.h"
 #include "engine/scene/table_settings.h"
@@ -17,67 +16,66 @@ enum class Composite : int {
   Sorted = 2,      ///< back-to-front alpha blending without the table, for comparison: Eq. 9
 };
 
+/// How a transmittance is read from the attenuation table.
 enum class AttenuationLookup : int {
-  Bilinear = 0,  ///< interpolated between the four table directions around the viewing direction
-  Nearest = 1,   ///< the nearest table direction, as in the paper
-  Exact = 2,     ///< not from the table, but along rays from the eye (source_rays.h), computed once a frame
-  /// Exact if the eye is inside the volume or the volume has emission, Bilinear if the eye is far away, else
-  /// a mix: rayShare, lookupFor.
-  Auto = 3,
+  Bilinear = 0,  ///< interpolated between the four table directions around the direction
+  Nearest = 1,   ///< of the nearest table direction, as in the paper
 };
 
+/// How a frame is drawn.
 enum class Draw : int {
-  Auto = 0,    ///< Gather if it can draw the frame (drawsByGathering), else Splats
-  Gather = 1,  ///< samples of the image march through the volume and compute their own transmittance
-  Splats = 2,  ///< billboards that are added in any order, as in the paper
+  Gather = 0,  ///< GatherSettings
+  Splats = 1,  ///< SplatSettings
+};
+
+/// Samples of the image march through the volume and compute their own transmittance (engine/docs/gather.md).
+struct GatherSettings {
+  float endTransmittance = 1.0f / 512.0f;  ///< transmittance to the eye at which a ray ends; 0 marches all of it
+  /// The roughness up to which rays are interpolated from rays twice as far apart (gather_roughness.comp); 0 marches every ray, as do
+  /// parts, cubes and images of voxels smaller than 0.8 pixels.
+  float sampleTolerance = 1.0f / 16.0f;
+};
+
+/// Billboards are added in any order, with transmittances of the attenuation table: Subr et al. 2007.
+struct SplatSettings {
+  Composite composite = Composite::Normalised;
+  AttenuationLookup attenuation = AttenuationLookup::Bilinear;
+  /// Whether the optical depth to the eye varies across a footprint, to first order, and the composite is also normalised along the
+  /// kernel's depth. Otherwise a splat has the optical depth in front of its voxel's centre, as in the paper.
+  bool gradient = true;
+  bool culling = true;  ///< whether blocks outside of the image are left out; Sorted draws all voxels
+  /// Blocks of which the table says that less than this part of their light reaches the eye are left out; 0 leaves out none. Ignored
+  /// without `culling`, by Sorted, by parts, and where the eye is inside the volume. What is seen through a hole that none of the table's
+  /// directions passes is lost with it.
+  float cullThreshold = 0.0f;
 };
 
 struct FrameSettings {
   glm::ivec2 size{1024, 1024};
-  Draw draw = Draw::Splats;  ///< the front ends use Auto by default
-  Composite composite = Composite::Normalised;
-  AttenuationLookup attenuation = AttenuationLookup::Auto;
-  /// Whether the optical depth to the eye varies across a footprint, to first order, and the composite is
-  /// also normalised along the kernel's depth. Otherwise a splat has the optical depth in front of its
-  /// voxel's centre, as in the paper.
-  bool gradient = true;
-  /// Largest edge in pixels of a block of voxels that is drawn as one splat; 0 draws voxels only. Ignored by
-  /// Sorted, which draws voxels.
+  std::variant<GatherSettings, SplatSettings> method;
+  /// Largest edge in pixels of a block of voxels that is drawn as one element; 0 draws voxels only, as Sorted does.
   float lod = 1.0f;
-  /// Whether blocks outside of the image and hidden blocks are left out. Ignored by Sorted, which draws all
-  /// voxels.
-  bool culling = true;
-  float cullThreshold =
-      1.0f / 512.0f;  ///< transmittance to the eye below which a voxel is hidden; 0 disables the test
-  /// Bytes of device memory that the depths along rays may take. If they need more, Exact fails and Auto uses
-  /// Bilinear.
-  std::uint64_t mostRayBytes = std::numeric_limits<std::uint64_t>::max();
   bool depth = false;  ///< whether to compute Image::depth
-  /// With the gather: the roughness up to which rays are interpolated from rays twice as far apart (gather_roughness.comp); 0 marches
-  /// every ray, as do parts, cubes and images of voxels smaller than 0.8 pixels.
-  float sampleTolerance = 1.0f / 16.0f;
-  /// If empty, every voxel sends out its colour without lighting. Lights are looked up in the table
-  /// bilinearly, or by the nearest direction with AttenuationLookup::Nearest.
+  /// If empty, every voxel sends out its colour without lighting.
   std::optional<Lighting> lighting = std::nullopt;
-};
 
-/// Whether the gather can draw the frame. It computes transmittance along its own rays, so it supports no
-/// look-up in the table and no Sorted composite.
-inline bool canGather(const FrameSettings& settings) {
-  return settings.composite != Composite::Sorted &&
-         (settings.attenuation == AttenuationLookup::Exact || settings.attenuation == AttenuationLookup::Auto);
-}
-inline bool drawsByGathering(const FrameSettings& settings) {
-  return settings.draw != Draw::Splats && canGather(settings);
-}
+  bool gathers() const { return std::holds_alternative<GatherSettings>(method); }
+  GatherSettings& gather() { return std::get<GatherSettings>(method); }
+  const GatherSettings& gather() const { return std::get<GatherSettings>(method); }
+  SplatSettings& splats() { return std::get<SplatSettings>(method); }
+  const SplatSettings& splats() const { return std::get<SplatSettings>(method); }
+  bool isNormalised() const { return gathers() || splats().composite == Composite::Normalised; }
+  bool isSorted() const { return !gathers() && splats().composite == Composite::Sorted; }
+  /// How lights are looked up in the table, if they are.
+  AttenuationLookup tableLookup() const { return gathers() ? AttenuationLookup::Bilinear : splats().attenuation; }
+};
 
 /// Resolves LightAttenuation::Auto for settings with lighting, assuming enough memory.
 /// AttenuationLookup::Nearest implies Table, as in the paper.
 inline LightAttenuation lightAttenuationFor(const FrameSettings& settings) {
   const Lighting& lighting = *settings.lighting;
   if (lighting.attenuation != LightAttenuation::Auto) return lighting.attenuation;
-  const bool isPaper = settings.attenuation == AttenuationLookup::Nearest;
-  return isPaper ? LightAttenuation::Table : LightAttenuation::Exact;
+  return settings.tableLookup() == AttenuationLookup::Nearest ? LightAttenuation::Table : LightAttenuation::Exact;
 }
 
 }  // namespace freevoxels

@@ -85,15 +85,15 @@ SumDigits sumDigits(const SumBounds& bounds) {
 
 FixedSums sumsLayout(const DeviceVolume& volume, const FrameConstants& frame, const FrameSettings& settings) {
   const Lighting* const lighting = settings.lighting ? &*settings.lighting : nullptr;
-  return {.size = settings.size,
-          .first = frame.coveredFirst,
-          .extent = frame.coveredExtent,
-          .channels = settings.depth ? kSumChannels : kSumChannels - 1,
-          .digits = sumDigits(sumBounds(volume, frame, lighting)),
-          // The look-ups that Auto came to, which depends on the device's memory.
-          .method = fmt::format("eye {} {}, lights {}", frame.setup.lookup, frame.setup.rayShare,
-                                frame.lit ? fmt::format("{}", frame.setup.lighting.lookup) : "none"),
-          .values = {}};
+  return {
+      .size = settings.size,
+      .first = frame.coveredFirst,
+      .extent = frame.coveredExtent,
+      .channels = settings.depth ? kSumChannels : kSumChannels - 1,
+      .digits = sumDigits(sumBounds(volume, frame, lighting)),
+      // The look-ups that Auto came to, which depends on the device's memory.
+      .method = fmt::format("eye {}, lights {}", frame.setup.lookup, frame.lit ? fmt::format("{}", frame.setup.lighting.lookup) : "none"),
+      .values = {}};
 }
 
 AccumulatePass::AccumulatePass(const Device& device, bool withDistance)

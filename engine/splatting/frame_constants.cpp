@@ -16,7 +16,6 @@ namespace {
 static_assert(shader::kSplatRadius == float(kFootprintRadius));
 static_assert(shader::kLookupBilinear == int(AttenuationLookup::Bilinear));
 static_assert(shader::kLookupNearest == int(AttenuationLookup::Nearest));
-static_assert(shader::kLookupExact == int(AttenuationLookup::Exact));
 static_assert(shader::kCompositeAdditive == int(Composite::Additive));
 static_assert(shader::kCompositeSorted == int(Composite::Sorted));
 
@@ -99,42 +98,35 @@ void setCovered(FrameConstants& frame, const ProjectedBox& box, double reach, gl
   frame.coveredExtent = glm::ivec2(glm::clamp(glm::ceil(box.high + reach), glm::dvec2(first), last)) - first + 1;
 }
 
-shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const Camera& camera, const FrameSettings& settings,
+shader::SetupFrame setupFrame(const DeviceVolume& volume, const TableSettings& table, const FrameSettings& settings,
                               const PixelRays& rays) {
   const glm::dmat3 toPixel = rays.indexToPixel();
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   const glm::dvec3 eyeToMiddle = middle - rays.origin;
-  const bool sorted = settings.composite == Composite::Sorted;
-  const AttenuationLookup wanted = lookupFor(settings.attenuation, volume.hasEmission());
-  const double share = sorted ? 0.0 : rayShare(wanted, camera, volume.layout.dimensions, volume.indexToWorld);
-  const int lookup = sorted                              ? shader::kLookupNone
-                     : share == 1.0                      ? shader::kLookupExact
-                     : wanted == AttenuationLookup::Auto ? shader::kLookupBilinear
-                                                         : int(wanted);
-  shader::SetupFrame setup{
-      .indexToWorld = glm::dmat3(volume.indexToWorld),
-      .indexToPixel = toPixel,
-      .middle = middle,
-      .eyeToMiddle = eyeToMiddle,
-      .middleInPixels = toPixel * eyeToMiddle,
-      .pixelX = rays.orthographic ? rays.originX : rays.directionX,
-      .pixelY = rays.orthographic ? rays.originY : rays.directionY,
-      .ray = rays.direction,
-      .imageSize = settings.size,
-      .orthographic = rays.orthographic ? 1 : 0,
-      .dimensions = volume.layout.dimensions,
-      .stores = volume.stores(),
-      .levelCount = int(volume.hierarchy.levels.size()),
-      .voxelSize = float(volume.voxelSize),
-      .lookup = lookup,
-      .rayShare = float(share),
-      .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
-      .kernelMean = settings.gradient && settings.composite == Composite::Normalised ? 1 : 0,
-      .gradient = settings.gradient && lookup != shader::kLookupNone ? 1 : 0,
-      .code = int(table.code),
-      .cells = int(table.directions),
-      .albedo = volume.albedo,
-      .emissionUnit = float(volume.emissionUnit)};
+  const SplatSettings* const splats = std::get_if<SplatSettings>(&settings.method);
+  const bool readsTable = splats != nullptr && !settings.isSorted();
+  shader::SetupFrame setup{.indexToWorld = glm::dmat3(volume.indexToWorld),
+                           .indexToPixel = toPixel,
+                           .middle = middle,
+                           .eyeToMiddle = eyeToMiddle,
+                           .middleInPixels = toPixel * eyeToMiddle,
+                           .pixelX = rays.orthographic ? rays.originX : rays.directionX,
+                           .pixelY = rays.orthographic ? rays.originY : rays.directionY,
+                           .ray = rays.direction,
+                           .imageSize = settings.size,
+                           .orthographic = rays.orthographic ? 1 : 0,
+                           .dimensions = volume.layout.dimensions,
+                           .stores = volume.stores(),
+                           .levelCount = int(volume.hierarchy.levels.size()),
+                           .voxelSize = float(volume.voxelSize),
+                           .lookup = readsTable ? int(splats->attenuation) : shader::kLookupNone,
+                           .pathLengthCorrection = table.pathLengthCorrection ? 1 : 0,
+                           .kernelMean = readsTable && splats->gradient && splats->composite == Composite::Normalised ? 1 : 0,
+                           .gradient = readsTable && splats->gradient ? 1 : 0,
+                           .code = int(table.code),
+                           .cells = int(table.directions),
+                           .albedo = volume.albedo,
+                           .emissionUnit = float(volume.emissionUnit)};
   for (int level = 0; level < setup.levelCount; ++level) setup.levels[level] = volume.onDevice(level);
   return setup;
 }
@@ -150,15 +142,13 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const PixelRays fromMiddle = rays.countedFrom(imageMiddle);
   const glm::dmat3 linear(volume.indexToWorld);
   FrameConstants frame{};
-  frame.setup = setupFrame(volume, table, camera, settings, fromMiddle);
-  frame.detail = detailRule(volume.hierarchy, rays, settings.size,
-                            settings.composite == Composite::Sorted ? 0.0 : double(settings.lod));
+  frame.setup = setupFrame(volume, table, settings, fromMiddle);
+  frame.detail = detailRule(volume.hierarchy, rays, settings.size, settings.isSorted() ? 0.0 : double(settings.lod));
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
   frame.brightestRay = brightestRay(volume);
   const double brightest = std::max(frame.brightestRay, 1.0);
-  if (settings.culling) frame.hiddenTransmittance = double(settings.cullThreshold) / brightest;
+  if (settings.gathers()) frame.endTransmittance = double(settings.gather().endTransmittance) / brightest;
   if (frame.cull.hiddenDepth > 0.0) frame.cull.hiddenDepth += std::log(brightest);
-  if (!frame.eyeReadsTable()) frame.cull.hiddenDepth = 0.0;
   const glm::dvec3 ray = fromMiddle.direction, rayX = fromMiddle.directionX, rayY = fromMiddle.directionY;
   frame.resolve = {.ray = ray,
                    .rayX = rayX,
@@ -167,7 +157,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                    .worldRayX = linear * rayX,
                    .worldRayY = linear * rayY,
                    .size = settings.size,
-                   .composite = int(settings.composite)};
+                   .composite = int(settings.gathers() ? Composite::Normalised : settings.splats().composite)};
 
   frame.eye = eyeSource(camera, volume.indexToWorld);
   frame.eyeInside = isInside(frame.eye, volume.layout.dimensions);

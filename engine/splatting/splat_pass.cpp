@@ -79,18 +79,8 @@ void SplatPass::beginRendering(Commands& commands, const FrameTargets& targets, 
   vkCmdSetScissor(commands.handle(), 0, 1, &scissor);
 }
 
-void SplatPass::makeRoomForRays(const DeviceVolume& volume, const RaySource& eye, std::uint64_t mostBytes) {
-  if (!rays_) rays_.emplace(device_);
-  rays_->makeRoom(volume.layout.dimensions, eye, mostBytes);
-}
-
 void SplatPass::recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame) {
   shader::SetupFrame setup = frame.setup;
-  if (frame.readsRays()) {
-    if (!rays_) rays_.emplace(device_);
-    rays_->record(commands, volume, frame.eye);
-    std::ranges::copy(rays_->fans(), setup.fans);
-  }
   if (frame.eyeReadsTable() && frame.eyeInside) {
     eyeDepthsPass_.record(commands, volume, DirectionSet(setup.cells), frame.eye, eyeDepths_);
     setup.sourceDepth = addressWords(eyeDepths_.address());

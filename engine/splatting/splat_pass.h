@@ -4,12 +4,10 @@
 
 #include <array>
 #include <functional>
-#include <optional>
 #include <vector>
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/attenuation/eye_depths.h"
-#include "engine/attenuation/ray_sweep.h"
 #include "engine/octree/block_list.h"
 #include "engine/octree/device_volume.h"
 #include "engine/scene/camera.h"
@@ -31,9 +29,7 @@ struct FrameConstants {
   bool lit = false;        ///< whether there is lighting; the caller fills in setup.lighting
   bool tinted = false;     ///< only with lighting
   bool lightsReadTable = false;
-  /// Transmittance to the eye below which nothing is visible, however bright the volume; 0 if nothing is left
-  /// out.
-  double hiddenTransmittance = 0.0;
+  double endTransmittance = 0.0;  ///< to the eye, at which a gathered ray ends, however bright the volume; 0: at its end
   DetailRule detail;
   CullRule cull;
   /// Whether the table's levels above the voxels are looked up.
@@ -46,21 +42,16 @@ struct FrameConstants {
   float viewportMargin =
       0.0f;  ///< margin of the viewport in pixels, so that points whose centres are outside of the image are not clipped
 
-  /// The rays from the eye.
-  bool eyeReadsTable() const {
-    return setup.lookup == shader::kLookupBilinear || setup.lookup == shader::kLookupNearest;
-  }
+  bool eyeReadsTable() const { return setup.lookup != shader::kLookupNone; }
   bool readsTable() const { return eyeReadsTable() || lightsReadTable; }
-  bool readsRays() const { return setup.rayShare > 0.0f; }
 };
 
 FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume,
                                   const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings);
 
-/// COMPUTE ray_sweep.comp if exact depths have a weight, or eye_depths.comp if the table is looked up from
-/// inside; then COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag, chunk by chunk. Leaves the
-/// targets in layout GENERAL, visible to compute.
+/// COMPUTE eye_depths.comp if the table is looked up from inside; then COMPUTE splat_setup.comp and GRAPHICS splat.vert + splat.frag,
+/// chunk by chunk. Leaves the targets in layout GENERAL, visible to compute.
 class SplatPass {
  public:
   /// All frames must be of the same volume.
@@ -79,12 +70,8 @@ class SplatPass {
     std::function<void(const Buffer& splats, std::uint32_t chunk)> onSplats;
   };
   void record(Commands& commands, const Inputs& inputs, const FrameConstants& frame, const FrameTargets& targets);
-  /// Allocates memory for frames with exact depths, as RaySweep::makeRoom; must be called before recording.
-  void makeRoomForRays(const DeviceVolume& volume, const RaySource& eye, std::uint64_t mostBytes);
-  /// Whether such memory is allocated.
-  bool draws(const FrameSettings& settings) const {
-    return withDistance_ == settings.depth && sorted_ == (settings.composite == Composite::Sorted);
-  }
+  /// Whether the pass is made for such frames.
+  bool draws(const FrameSettings& settings) const { return withDistance_ == settings.depth && sorted_ == settings.isSorted(); }
 
  private:
   void recordFrame(Commands& commands, const DeviceVolume& volume, const FrameConstants& frame);
@@ -97,7 +84,6 @@ class SplatPass {
   std::array<Pipeline, 3> setups_;
   Pipeline points_, quads_;
   EyeDepthsPass eyeDepthsPass_;
-  std::optional<RaySweep> rays_;
   Buffer frame_;      ///< shader::SetupFrame
   Buffer eyeDepths_;  ///< output of EyeDepthsPass
   Buffer splats_;     ///< shader::Splat for each splat of a chunk

@@ -72,7 +72,7 @@ void checkCube(const StageMaker& make, int edge, ReportSection& section) {
   for (const View& view : kViews) {
     const Camera camera = cameraOf(cube, view);
     const BoxImage box = boxImage(cube, sigma, color, camera, size);
-    const Image image = device->image(camera, {.size = size});
+    const Image image = device->image(camera, {.size = size, .method = SplatSettings{}});
     MaxError worst;
     for (std::size_t i = 0; i < box.interior.size(); ++i)
       for (int c = 0; c < 4 && box.interior[i]; ++c)
@@ -99,7 +99,7 @@ Check checkSingleVoxel(const StageMaker& make) {
     camera.orthographicHeight *= 3.0;  // the kernel is larger than the voxel
     const double pixel = camera.orthographicHeight / size.y;
     double sum = 0.0;
-    for (const SplatSums& s : device->sums(camera, {.size = size})) sum += s.depth * pixel * pixel;
+    for (const SplatSums& s : device->sums(camera, {.size = size, .method = SplatSettings{}})) sum += s.depth * pixel * pixel;
     worst.take(std::abs(sum / expected - 1.0), [&] { return fmt::format("from {}, 33", azimuth); });
   }
   return worst.atMost(kIntegralTolerance, "a voxel's footprint integrates to its volume", "relative");
@@ -111,7 +111,7 @@ Check checkEmpty(const StageMaker& make) {
   const auto device = make(empty, physical(1.0, glm::vec3(1.0f)), {});
   MaxError worst;
   for (const Composite composite : {Composite::Normalised, Composite::Additive}) {
-    const FrameSettings settings{.size = {32, 32}, .composite = composite, .depth = true};
+    const FrameSettings settings{.size = {32, 32}, .method = SplatSettings{.composite = composite}, .depth = true};
     const Image image = device->image(framingCamera(empty, 35.0, 25.0, 1.0, {}), settings);
     for (std::size_t i = 0; i < image.pixels.size(); ++i) {
       const auto where = [&] { return pixelText(settings.size, i); };
@@ -133,7 +133,7 @@ Check checkTwoVoxels(const StageMaker& make) {
     const double p = footprintAt(x) * a, q = footprintAt(1.0 - x) * b;
     const double expected = p + q + (1.0 - a) * p + (1.0 - b) * q;
     const double energy =
-        device->sums(lookingDown(x, 0.0, 1e-3), {.size = {1, 1}, .gradient = false}).at(0).energy;
+        device->sums(lookingDown(x, 0.0, 1e-3), {.size = {1, 1}, .method = SplatSettings{.gradient = false}}).at(0).energy;
     worst.take(std::abs(energy - expected), [&] { return fmt::format("x = {}", x); });
   }
   return worst.atMost(kRoundingTolerance, "two layers of two voxels add up as Eq. 10");
@@ -150,7 +150,7 @@ Check checkFullLayers(const StageMaker& make) {
   MaxError worst;
   for (const glm::dvec2 at : {glm::dvec2(3.0, 3.0), glm::dvec2(3.5, 3.0), glm::dvec2(3.3, 2.6)}) {
     const double energy =
-        device->sums(lookingDown(at.x, at.y, 1e-3), {.size = {1, 1}, .composite = Composite::Additive})
+        device->sums(lookingDown(at.x, at.y, 1e-3), {.size = {1, 1}, .method = SplatSettings{.composite = Composite::Additive}})
             .at(0)
             .energy;
     worst.take(std::abs(energy / expected - 1.0), [&] { return fmt::format("({}, {})", at.x, at.y); });

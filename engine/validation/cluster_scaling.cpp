@@ -81,7 +81,7 @@ class Measurement {
   const Device& device_;
   Renderer renderer_;
   Camera camera_;
-  FrameSettings settings_{.size = {1024, 1024}, .cullThreshold = 0.0f};
+  FrameSettings settings_{.size = {1024, 1024}, .method = SplatSettings{.cullThreshold = 0.0f}};
   FixedSums whole_;
 };
 

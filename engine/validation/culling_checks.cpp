@@ -16,6 +16,7 @@ namespace freevoxels {
 namespace {
 
 constexpr float kAmplification = 20.0f;
+constexpr float kHiddenTransmittance = 1.0f / 512.0f;
 
 struct View {
   std::string name;
@@ -61,10 +62,10 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
   ReportSection section{.title = fmt::format("Culling: {}", scene.name),
                         .text = "Images without what is outside of them or hidden, against images of everything."};
   Renderer renderer(device, scene.volume, scene.classification, {});
-  const FrameSettings culled{.size = glm::ivec2(imageEdge), .lod = 0.0f};
+  const FrameSettings culled{.size = glm::ivec2(imageEdge), .method = SplatSettings{.cullThreshold = kHiddenTransmittance}, .lod = 0.0f};
   FrameSettings whole = culled, clipped = culled;
-  whole.culling = false;
-  clipped.cullThreshold = 0.0f;
+  whole.splats().culling = false;
+  clipped.splats().cullThreshold = 0.0f;
   ReportTable table{
       .caption = "Blocks of all levels",
       .columns = {"view", "considered", "empty", "outside", "hidden", "opened", "drawn", "of all voxels"},

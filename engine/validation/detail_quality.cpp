@@ -31,7 +31,7 @@ double pixelsPerVoxel(const Volume& volume, const Camera& camera, int imageEdge)
 }
 
 Image image(Renderer& renderer, const Camera& camera, int edge, float lod) {
-  return renderer.render(camera, {.size = glm::ivec2(edge), .lod = lod});
+  return renderer.render(camera, {.size = glm::ivec2(edge), .method = SplatSettings{}, .lod = lod});
 }
 
 /// The size of the image that the volume fills.

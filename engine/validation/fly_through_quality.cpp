@@ -20,12 +20,11 @@ constexpr double kMaxWrongChange =
 constexpr int kShownFrames = 6;
 
 std::vector<QualityMethod> methods() {
-  QualityMethod table{.name = "table alone", .table = {}, .frame = {}, .goals = {}};
-  table.frame.attenuation = AttenuationLookup::Bilinear;
+  const QualityMethod splats{.name = "splats", .table = {}, .frame = {.method = SplatSettings{}}, .goals = {}};
   const std::vector<QualityMethod>& all = qualityMethods();
   QualityMethod first = all.front();
   first.order = ClassificationOrder::Pre;  // far away both classifications use blocks that are classified before interpolation
-  return {first, table, all[sortedMethod(all)]};
+  return {first, splats, all[sortedMethod(all)]};
 }
 
 ReportPlot::Series psnrSeries(const std::string& name, const std::vector<Image>& images, const std::vector<Image>& oracle) {

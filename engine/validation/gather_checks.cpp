@@ -216,7 +216,7 @@ void checkImage(const Image& image, const Image& reference, const std::string& s
 Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings& whole, const std::vector<GatherSums>& samples,
                double tolerance, bool shines, const char* frame) {
   FrameSettings settings = whole;
-  settings.cullThreshold = kEndTransmittance;
+  settings.gather().endTransmittance = kEndTransmittance;
   const GatherStages stages = device.frame(camera, settings);
   MaxError worst;
   for (std::size_t i = 0; i < samples.size(); ++i) {
@@ -243,9 +243,9 @@ void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSet
   if (rough.empty()) return;
   std::ranges::nth_element(rough, rough.begin() + std::ptrdiff_t(rough.size() / 2));
   FrameSettings settings = whole;
-  settings.sampleTolerance = float(std::max(rough[rough.size() / 2], kLeastRoughness));
+  settings.gather().sampleTolerance = float(std::max(rough[rough.size() / 2], kLeastRoughness));
   const GatherStages adaptive = device.frame(camera, settings);
-  const double tolerance = double(settings.sampleTolerance), band = kRoughnessBand * tolerance + kRoughnessRounding;
+  const double tolerance = double(settings.gather().sampleTolerance), band = kRoughnessBand * tolerance + kRoughnessRounding;
   std::vector<GatherSums> expected = all.gathered;
   for (std::size_t i = 0; i < expected.size(); ++i) {
     const glm::ivec2 sample(int(i) % extent.x, int(i) / extent.x);
@@ -264,12 +264,9 @@ void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSet
 void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Classification& classification, const Frame& frame,
                 glm::ivec2 size, ReportSection& section) {
   const FrameSettings settings{.size = size,
-                               .draw = Draw::Gather,
-                               .composite = frame.composite,
+                               .method = GatherSettings{.endTransmittance = 0.0f, .sampleTolerance = 0.0f},
                                .lod = frame.lod,
-                               .cullThreshold = 0.0f,
                                .depth = true,
-                               .sampleTolerance = 0.0f,
                                .lighting = lightingOf(scene.volume, frame.light)};
   const Camera camera = cameraOf(scene.volume, frame.view, double(size.x) / size.y);
   const GatherStages stages = device.frame(camera, settings);

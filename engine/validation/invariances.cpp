@@ -212,7 +212,7 @@ ReportSection invariances(const Device& device, const ValidationScene& scene, gl
   const CheckedFrame frame{.device = device,
                            .scene = scene,
                            .camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {}),
-                           .settings = {.size = size, .lod = 0.0f}};
+                           .settings = {.size = size, .method = SplatSettings{}, .lod = 0.0f}};
   const auto outputs = deviceStages(device)(scene.volume, scene.classification, {});
   const TableBytes table = outputs->table();
   const Image image = outputs->image(frame.camera, frame.settings);

@@ -80,8 +80,8 @@ std::vector<Stack> drawStacks(const StageMaker& make, const LayerStacks& stacks)
   const Volume volume = volumeOf(stacks);
   const View view(volume);
   const auto outputs = make(volume, physical(1.0, glm::vec3(1.0f)), {});
-  const std::vector<SplatSums> sums = outputs->sums(view.camera, {.size = view.size});
-  const Image sorted = outputs->image(view.camera, {.size = view.size, .composite = Composite::Sorted});
+  const std::vector<SplatSums> sums = outputs->sums(view.camera, {.size = view.size, .method = SplatSettings{}});
+  const Image sorted = outputs->image(view.camera, {.size = view.size, .method = SplatSettings{.composite = Composite::Sorted}});
   std::vector<Stack> drawn;
   for (std::size_t x = 0; x < stacks.opacities.size(); ++x)
     for (std::size_t y = 0; y < stacks.layers.size(); ++y) {

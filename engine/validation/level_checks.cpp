@@ -101,7 +101,7 @@ Check checkCoverage(Renderer& renderer, const Volume& volume, const LevelData& v
   std::mt19937 generator(5);
   MaxError worst;
   for (int i = 0; i < kCameras; ++i) {
-    FrameSettings settings{.size = size, .attenuation = AttenuationLookup::Nearest, .culling = false};
+    FrameSettings settings{.size = size, .method = SplatSettings{.attenuation = AttenuationLookup::Nearest, .culling = false}};
     const Camera camera = randomCamera(volume, generator);
     settings.lod = float(std::uniform_real_distribution<double>(0.5, 40.0)(generator));
     renderer.render(camera, settings);
@@ -118,7 +118,7 @@ Check checkCutImage(Renderer& renderer, const ValidationScene& scene, const Leve
   Camera camera =
       framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y, {});
   camera.position = camera.lookAt + 0.6 * (camera.position - camera.lookAt);
-  const FrameSettings settings{.size = size, .lod = 6.0f};
+  const FrameSettings settings{.size = size, .method = SplatSettings{}, .lod = 6.0f};
   const Image image = renderer.render(camera, settings);
   const SplatInputs inputs{.extinction = voxels.extinction,
                            .table = voxels.table,

@@ -85,7 +85,7 @@ void checkBall(const Device& device, int resolution, ReportSection& section) {
   Renderer fog(device, fogAlone, medium, {}), ball(device, fogAndBall, medium, {});
   ImageRow row{.caption = "A ball in fog", .images = {}};
   for (const Shadows& shadows : kShadows) {
-    FrameSettings settings{.size = glm::ivec2(4 * resolution)};
+    FrameSettings settings{.size = glm::ivec2(4 * resolution), .method = SplatSettings{}};
     settings.lighting = Lighting{.lights = {{.place = direction}}, .attenuation = shadows.attenuation};
     const Image empty = fog.render(kBoxCamera, settings), shaded = ball.render(kBoxCamera, settings);
     row.images.push_back({fmt::format("{}: {:g} times what is missing", shadows.name, kDifferenceGain), amplified(empty, shaded)});
@@ -133,7 +133,7 @@ void checkHollow(const Device& device, int resolution, ReportSection& section) {
   const Volume volume = hollowBall(resolution);
   Renderer renderer(device, volume, fogAndWall(volume), {});
   const Camera inside{.position = {0.02, 0.01, -0.03}, .lookAt = {-1.0, -0.7, -0.4}, .verticalFov = 100.0};
-  const double unshadowed = double(brightest(renderer.render(inside, {.size = {48, 48}})));
+  const double unshadowed = double(brightest(renderer.render(inside, {.size = {48, 48}, .method = SplatSettings{}})));
   std::vector<Light> lights{{.place = {0.6, 1.1, -0.2}, .atInfinity = false}};
   for (const glm::dvec3 direction : {glm::dvec3(1, 0, 0), glm::dvec3(1, 1, 0), glm::dvec3(1, 1, 1),
                                      glm::dvec3(-1, 0.3, 0.6), glm::dvec3(0.2, -1, 0.45)})
@@ -141,7 +141,7 @@ void checkHollow(const Device& device, int resolution, ReportSection& section) {
   for (const Shadows& shadows : kShadows) {
     MaxError worst;
     for (const Light& light : lights) {
-      FrameSettings settings{.size = {48, 48}};
+      FrameSettings settings{.size = {48, 48}, .method = SplatSettings{}};
       settings.lighting = Lighting{.lights = {light}, .attenuation = shadows.attenuation};
       worst.take(double(brightest(renderer.render(inside, settings))) / unshadowed, [&] {
         return fmt::format("light at ({:g}, {:g}, {:g})", light.place.x, light.place.y, light.place.z);
@@ -167,7 +167,7 @@ struct LitCase {
   Lighting lighting;
   double goal;              ///< least PSNR of the worst view, in dB
   double meanGoal = 0.0;    ///< least mean PSNR over the views; 0 if there is none
-  Draw draw = Draw::Splats;
+  decltype(FrameSettings::method) draw = SplatSettings{};
 };
 
 /// The oracle's images, which do not depend on how shadows are computed.
@@ -192,7 +192,7 @@ void compareToOracle(const Device& device, const QualityScene& scene, std::span<
         oracle = renderOracle(scene.volume, scene.classification, camera, truth).image;
         shown.images.push_back({"oracle", oracle});
       }
-      const FrameSettings settings{.size = glm::ivec2(imageEdge), .draw = cases[i].draw, .lighting = cases[i].lighting};
+      const FrameSettings settings{.size = glm::ivec2(imageEdge), .method = cases[i].draw, .lighting = cases[i].lighting};
       const Image image = renderer.render(camera, settings);
       const double psnr = compareImages(image, oracle).psnr;
       row.push_back(fmt::format("{:.1f}", psnr));
@@ -230,7 +230,7 @@ ReportSection lightQuality(const Device& device, const QualityScene& scene, int 
   for (const Shadows& shadows : kShadows)
     cases.push_back(
         {fmt::format("lit, {} shadows", shadows.name), sideLight(shadows.attenuation), shadows.goal});
-  cases.push_back({"lit, gathered", sideLight(LightAttenuation::Exact), kExactLightPsnr, 0.0, Draw::Gather});
+  cases.push_back({"lit, gathered", sideLight(LightAttenuation::Exact), kExactLightPsnr, 0.0, GatherSettings{}});
   const std::array<QualityView, 2> views{{{}, {.azimuth = 200.0, .elevation = -20.0}}};
   compareToOracle(device, scene, views, imageEdge, cases, section);
   return section;
@@ -246,8 +246,8 @@ ReportSection opaqueLightQuality(const Device& device, const QualityScene& scene
   const Lighting three{.lights = lights, .attenuation = LightAttenuation::Exact};
   const QualityScene scan{.name = scene.name, .volume = filled(scene.volume), .classification = scene.classification};
   compareToOracle(device, scan, views, imageEdge,
-                  {{"one light", one, kOpaqueWorstPsnr, kOpaqueMeanPsnr, Draw::Gather},
-                   {"three lights", three, kOpaqueWorstPsnr, kOpaqueMeanPsnr, Draw::Gather}},
+                  {{"one light", one, kOpaqueWorstPsnr, kOpaqueMeanPsnr, GatherSettings{}},
+                   {"three lights", three, kOpaqueWorstPsnr, kOpaqueMeanPsnr, GatherSettings{}}},
                   section);
   return section;
 }

@@ -97,7 +97,9 @@ void addLeakingView(const StageMaker& make, const Volume& cube, const QualityVie
   const Camera camera = viewCamera(cube, view);
   const auto outputs = make(cube, classification, {});
   const Image oracle = renderOracle(cube, classification, camera, {.size = kLeakingImage}).image;
-  const auto draw = [&](Composite composite) { return outputs->image(camera, {.size = kLeakingImage, .composite = composite}); };
+  const auto draw = [&](Composite composite) {
+    return outputs->image(camera, {.size = kLeakingImage, .method = SplatSettings{.composite = composite}});
+  };
   const Image sorted = draw(Composite::Sorted), additive = draw(Composite::Additive),
               normalised = draw(Composite::Normalised);
   const double sortedError = meanAlphaError(sorted, oracle);
@@ -131,7 +133,7 @@ struct LitHead {
   }
   Camera camera() const { return viewCamera(volume, kLitView); }
   Image image(glm::ivec2 size, const std::optional<Lighting>& lighting) const {
-    return outputs->image(camera(), {.size = size, .lighting = lighting});
+    return outputs->image(camera(), {.size = size, .method = SplatSettings{}, .lighting = lighting});
   }
 };
 
@@ -173,7 +175,8 @@ ReportSection paperFigure2(const StageMaker& make) {
     const Volume shown = transmittances(cube, table[std::size_t(direction)]);
     section.checks.push_back(checkTransmittances(shown, direction));
     const auto outputs = make(shown, asBrightness(shown), {});
-    row.images.push_back({directionText(kLatticeSteps, direction), outputs->image(viewCamera(shown, kTableView), {.size = kTableImage})});
+    row.images.push_back({directionText(kLatticeSteps, direction),
+                          outputs->image(viewCamera(shown, kTableView), {.size = kTableImage, .method = SplatSettings{}})});
   }
   section.imageRows.push_back(std::move(row));
   return section;

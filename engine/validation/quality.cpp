@@ -128,7 +128,7 @@ ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene
                   .series = {}};
   const std::vector<QualityMethod>& methods = qualityMethods();
   for (const QualityMethod& method : methods) {
-    if (!method.goals.least && method.frame.composite != Composite::Sorted) continue;
+    if (!method.goals.least && !method.frame.isSorted()) continue;
     ReportPlot::Series series{.name = method.name, .points = {}};
     for (const double psnr : turntablePsnr(make, scene, method, cameras, oracle))
       series.points.emplace_back(90.0 * double(series.points.size()) / frames, psnr);

@@ -61,12 +61,10 @@ struct Method {
   bool gradient, depth;
   bool inside = false;  ///< whether the eye is in the middle of the volume
 };
-constexpr std::array<Method, 5> kMethods{
-    {{"default", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true, true},
-     {"exact", 0, false, Composite::Normalised, AttenuationLookup::Exact, true, false},
-     {"eye inside", 0, false, Composite::Normalised, AttenuationLookup::Auto, true, true, true},
-     {"the paper's", 3, true, Composite::Additive, AttenuationLookup::Nearest, false, false},
-     {"98 directions", 4, false, Composite::Normalised, AttenuationLookup::Bilinear, true, false}}};
+constexpr std::array<Method, 4> kMethods{{{"default", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true, true},
+                                          {"eye inside", 0, false, Composite::Normalised, AttenuationLookup::Bilinear, true, true, true},
+                                          {"the paper's", 3, true, Composite::Additive, AttenuationLookup::Nearest, false, false},
+                                          {"98 directions", 4, false, Composite::Normalised, AttenuationLookup::Bilinear, true, false}}};
 
 /// The device's results for one scene and one table variant.
 struct Outcome {
@@ -215,10 +213,10 @@ double rayDifference(std::uint16_t a, std::uint16_t b) {
   return std::abs(decodeRayDepth(a) - decodeRayDepth(b)) / code;
 }
 
-/// Checks the depths along rays from the camera's eye.
-Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& codes, const char* method) {
+/// Checks the depths along rays of a light, which has the place of the eye.
+Check checkRays(const Outcome& outcome, const RaySource& source, const char* method) {
   const Volume& volume = outcome.scene.volume;
-  const RaySource source = eyeSource(camera, volume.indexToWorld);
+  const RayCodes codes = outcome.device.rays(source);
   const RayCodes reference = referenceRays(volume, outcome.extinction, source);
   const std::array<FaceRays, 6> fans = faceRays(volume.dimensions, source);
   MaxError worst;
@@ -242,27 +240,18 @@ Check checkRays(const Outcome& outcome, const Camera& camera, const RayCodes& co
 
 void checkFrame(const Outcome& outcome, const Method& method, glm::ivec2 size, ReportSection& section) {
   const ValidationScene& scene = outcome.scene;
-  const FrameSettings settings{.size = size,
-                               .composite = method.composite,
-                               .attenuation = method.attenuation,
-                               .gradient = method.gradient,
-                               .lod = 0.0f,
-                               .depth = method.depth};
+  const FrameSettings settings{
+      .size = size,
+      .method = SplatSettings{.composite = method.composite, .attenuation = method.attenuation, .gradient = method.gradient},
+      .lod = 0.0f,
+      .depth = method.depth};
   Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, double(size.x) / size.y,
                                 {.orthographic = method.orthographic});
   if (method.inside) camera = cameraInside(scene.volume, camera);
   const std::vector<SplatSums> sums = outcome.device.sums(camera, settings);
-  SplatInputs inputs{.extinction = outcome.extinction,
-                     .table = outcome.table,
-                     .tableSettings = outcome.settings,
-                     .emission = outcome.emission};
-  RayCodes rays;
-  const AttenuationLookup lookup = lookupFor(method.attenuation, !outcome.emission.empty());
-  if (rayShare(lookup, camera, scene.volume.dimensions, scene.volume.indexToWorld) > 0.0) {
-    rays = outcome.device.rays(camera);
-    section.checks.push_back(checkRays(outcome, camera, rays, method.name));
-    inputs.rays = &rays;
-  }
+  const SplatInputs inputs{
+      .extinction = outcome.extinction, .table = outcome.table, .tableSettings = outcome.settings, .emission = outcome.emission};
+  section.checks.push_back(checkRays(outcome, eyeSource(camera, scene.volume.indexToWorld), method.name));
   const std::vector<SplatSums> reference =
       referenceSplatSums(scene.volume, scene.classification, inputs, camera, settings, outcome.visible);
   for (const Channel& channel : std::span(kChannels).first(method.depth ? 4 : 3))

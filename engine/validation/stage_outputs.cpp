@@ -16,7 +16,7 @@ class RendererOutputs : public StageOutputs {
   std::vector<glm::dvec3> emission() override { return RendererStages(renderer_).downloadEmission(); }
   TableBytes table() override { return RendererStages(renderer_).downloadTable(); }
   std::vector<std::uint32_t> visibleVoxels() override { return RendererStages(renderer_).downloadBlockList(); }
-  RayCodes rays(const Camera& camera) override { return RendererStages(renderer_).downloadRays(camera); }
+  RayCodes rays(const RaySource& source) override { return RendererStages(renderer_).downloadRays(source); }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return RendererStages(renderer_).renderSums(camera, settings);
   }

@@ -30,8 +30,8 @@ class StageOutputs {
   virtual std::vector<glm::dvec3> emission() = 0;
   virtual TableBytes table() = 0;
   virtual std::vector<std::uint32_t> visibleVoxels() = 0;
-  /// Depths along rays from the camera's eye.
-  virtual RayCodes rays(const Camera& camera) = 0;
+  /// Depths along rays from a source.
+  virtual RayCodes rays(const RaySource& source) = 0;
   /// The sums of every pixel before the resolve.
   virtual std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) = 0;
   virtual Image image(const Camera& camera, const FrameSettings& settings) = 0;

@@ -41,12 +41,11 @@ bool isOutsideBox(const PixelRays& rays, glm::ivec3 dimensions) {
 
 CullRule cullRule(glm::ivec3 dimensions, const PixelRays& rays, const FrameSettings& settings) {
   CullRule rule;
-  if (!settings.culling || settings.composite == Composite::Sorted) return rule;
+  if (settings.gathers() || settings.isSorted() || !settings.splats().culling) return rule;
   rule.planes = imagePlanes(0.5 * glm::dvec3(dimensions - 1), rays, settings.size);
   rule.outside = !areAllInside(rule.planes, dimensions);
-  if (settings.cullThreshold > 0.0f && settings.attenuation != AttenuationLookup::Exact &&
-      isOutsideBox(rays, dimensions))
-    rule.hiddenDepth = -std::log(double(settings.cullThreshold));
+  const double threshold = double(settings.splats().cullThreshold);
+  if (threshold > 0.0 && isOutsideBox(rays, dimensions)) rule.hiddenDepth = -std::log(threshold);
   return rule;
 }
 

@@ -22,8 +22,8 @@ struct CullRule {
   bool leavesNothingOut() const { return !outside && hiddenDepth == 0.0; }
 };
 
-/// The rule of a frame. Blocks are only hidden if the table is read and the eye is outside of the volume's
-/// box: for an eye inside, the table's optical depths count to the outside and exceed those to the eye.
+/// The rule of a frame of splats. Blocks are only hidden if the eye is outside of the volume's box: for an eye inside, the table's optical
+/// depths count to the outside and exceed those to the eye.
 CullRule cullRule(glm::ivec3 dimensions, const PixelRays& rays, const FrameSettings& settings);
 
 /// Whether any block can be hidden, that is, dark in all four table directions around a line of sight

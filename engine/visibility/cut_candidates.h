@@ -12,7 +12,7 @@ namespace freevoxels {
 struct CutCandidates {
   struct Level {
     Buffer parents;   ///< uint: the blocks of the level above that have children in the set, ascending
-    Buffer children;  ///< uint: for each parent, a bit for each child that is in the set (candidate_slot.glsl has their order)
+    Buffer children;  ///< uint: for each parent, a bit for each child that is in the set (cut_frame.glsl has their order)
     std::uint32_t parentCount = 0;
     std::uint64_t mostBlocks = 0;  ///< at least the number of occupied blocks of the level in the set
   };

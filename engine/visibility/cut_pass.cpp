@@ -68,12 +68,8 @@ shader::CutFrame cutFrame(const CutInputs& inputs) {
                          .edgePerDistance = float(inputs.detail.edgePerDistance),
                          .outside = inputs.cull.outside ? 1 : 0,
                          .hides = inputs.cull.hiddenDepth > 0.0 ? 1 : 0,
-                         .tiles = coverTiles(inputs.rays.size),
-                         .imageMiddle = 0.5f * setup.imageSize,
                          .indexToWorld = setup.indexToWorld,
-                         .indexToPixel = setup.indexToPixel,
                          .eyeToMiddle = setup.eyeToMiddle,
-                         .middleInPixels = setup.middleInPixels,
                          .ray = setup.ray,
                          .orthographic = setup.orthographic,
                          .pathLengthCorrection = setup.pathLengthCorrection,
@@ -91,31 +87,27 @@ CutPass::CutPass(const Device& device, AttenuationCode code)
       code_(code),
       scan_(makeComputePipeline(device, shaders::compact_scan)),
       write_(makeComputePipeline(device, shaders::cut_write)),
-      cover_(device),
-      frame_(device, sizeof(shader::CutFrame), MemoryUse::Device, "cut frame",
-             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
+      frame_(device, sizeof(shader::CutFrame), MemoryUse::Device, "cut frame", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       counts_(device, sizeof(shader::CutCounts), MemoryUse::Device, "cut counts") {
-  for (const Part part : {Part::First, Part::Deferred})
-    for (const std::uint32_t voxels : {0u, 1u})
-      select_[std::size_t(part)][voxels] = makeComputePipeline(device, shaders::cut_select, {std::uint32_t(code), std::uint32_t(part), voxels, 0u});
+  for (const std::uint32_t voxels : {0u, 1u})
+    select_[voxels] = makeComputePipeline(device, shaders::cut_select, {std::uint32_t(code), voxels, 0u});
 }
 
 void CutPass::makeRoom(const CutInputs& inputs) {
   const std::uint64_t most = mostBlocks_ = mostDrawn(inputs);
   const std::uint64_t groups = std::max<std::uint64_t>(groupCount_, 1);
-  const std::uint64_t coarse = std::max<std::uint64_t>((inputs.volume.coarseBlocks() + 3) / 4 * 4, 4);
-  cut_.chunkCount = 2 * std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
-  makeLarger(device_, children_, coarse, "blocks to look at");
-  makeLarger(device_, deferred_, coarse, "deferred blocks");
+  const std::uint64_t words = std::max<std::uint64_t>((inputs.volume.coarseBlocks() + 31) / 32, 1);
+  cut_.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
+  makeLarger(device_, opened_, words * sizeof(std::uint32_t), "opened blocks");
   makeLarger(device_, masks_, groups * shader::kCutThreads * sizeof(std::uint32_t), "cut masks");
-  makeLarger(device_, cut_.groupOffsets, 2 * (groups + 1) * sizeof(std::uint32_t), "cut group offsets");
+  makeLarger(device_, cut_.groupOffsets, (groups + 1) * sizeof(std::uint32_t), "cut group offsets");
   makeLarger(device_, cut_.indices, most * sizeof(std::uint32_t), "cut");
   makeLarger(device_, cut_.chunks, cut_.chunkCount * sizeof(shader::ChunkArguments), "cut chunk arguments",
              VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 }
 
 /// The levels in the order in which they are processed, from the finest that is drawn.
-std::vector<CutPass::Level> CutPass::planLevels(const CutInputs& inputs, Part part) {
+std::vector<CutPass::Level> CutPass::planLevels(const CutInputs& inputs) {
   std::vector<Level> levels;
   std::uint64_t firstGroup = 0;
   finest_ = inputs.detail.finest;
@@ -136,87 +128,55 @@ std::vector<CutPass::Level> CutPass::planLevels(const CutInputs& inputs, Part pa
     firstGroup += groupsFor(slots);
   }
   groupCount_ = std::uint32_t(firstGroup);
-  for (Level& level : levels)
-    level.push.firstOffset = level.push.firstGroup + (part == Part::First ? 0 : groupCount_ + 1);
   return levels;
 }
 
 void CutPass::record(Commands& commands, const CutInputs& inputs) {
   commands.beginPass(kPassName);
-  hasDeferred_ = false;
-  recordPart(commands, inputs, Part::First);
+  const std::vector<Level> levels = planLevels(inputs);
+  makeRoom(inputs);
+  for (const Buffer* buffer : {&opened_, &counts_, &cut_.chunks}) commands.clear(*buffer);
+  commands.update(frame_, cutFrame(inputs));
+  recordSelect(commands, inputs, levels);
+  recordList(commands, std::span(levels).first(firstGroups_.size()));
 }
 
-void CutPass::recordDeferred(Commands& commands, const CutInputs& inputs, const RenderTarget& colorEnergy,
-                             const RenderTarget& opticalDepth) {
-  commands.beginPass(kPassName);
-  hasDeferred_ = true;
-  cover_.record(commands, {.counts = counts_,
-                           .colorEnergy = colorEnergy,
-                           .opticalDepth = opticalDepth,
-                           .rays = inputs.rays,
-                           .hiddenDepth = inputs.cull.hiddenDepth});
-  recordPart(commands, inputs, Part::Deferred);
-}
-
-void CutPass::recordPart(Commands& commands, const CutInputs& inputs, Part part) {
-  const std::vector<Level> levels = planLevels(inputs, part);
-  if (part == Part::First) {
-    makeRoom(inputs);
-    for (const Buffer* buffer : {&children_, &deferred_, &counts_, &cut_.chunks}) commands.clear(*buffer);
-    commands.update(frame_, cutFrame(inputs));
-  }
-  recordSelect(commands, inputs, levels, part);
-  recordList(commands, std::span(levels).first(firstGroups_.size()), part);
-}
-
-void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::span<const Level> levels,
-                           Part part) {
+void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::span<const Level> levels) {
   const Buffer& anyBuffer = frame_;
   if (inputs.candidates != nullptr && !selectCandidates_[0].exists())
     for (const std::uint32_t voxels : {0u, 1u})
-      selectCandidates_[voxels] = makeComputePipeline(device_, shaders::cut_select, {std::uint32_t(code_), 0u, voxels, 1u});
+      selectCandidates_[voxels] = makeComputePipeline(device_, shaders::cut_select, {std::uint32_t(code_), voxels, 1u});
   for (const Level& level : levels | std::views::reverse) {
-    const std::array<Binding, 11> bindings{&frame_,
-                                           level.parents,
-                                           &inputs.volume.occupancy,
-                                           &children_,
-                                           &deferred_,
-                                           &masks_,
-                                           &cut_.groupOffsets,
-                                           &counts_,
-                                           inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
-                                           part == Part::Deferred ? &cover_.tiles() : &anyBuffer,
-                                           level.children != nullptr ? level.children : &anyBuffer};
+    const std::array<Binding, 9> bindings{&frame_,
+                                          level.parents,
+                                          &inputs.volume.occupancy,
+                                          &opened_,
+                                          &masks_,
+                                          &cut_.groupOffsets,
+                                          &counts_,
+                                          inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
+                                          level.children != nullptr ? level.children : &anyBuffer};
     const std::size_t voxels = level.push.level == 0 ? 1 : 0;
-    const Pipeline& select = level.children != nullptr ? selectCandidates_[voxels] : select_[std::size_t(part)][voxels];
+    const Pipeline& select = level.children != nullptr ? selectCandidates_[voxels] : select_[voxels];
     if (level.push.slotCount > 0)
       commands.dispatchLinear(select, bindings, level.push, groupsFor(level.push.slotCount) * shader::kCutThreads);
     commands.barrier(kComputeStage, kComputeStage);
   }
 }
 
-void CutPass::recordList(Commands& commands, std::span<const Level> levels, Part part) {
+void CutPass::recordList(Commands& commands, std::span<const Level> levels) {
   const std::array<Binding, 2> scan{&cut_.groupOffsets, &cut_.chunks};
-  const std::uint32_t chunks = cut_.chunkCount / 2;
-  const bool first = part == Part::First;
-  commands.dispatchLinear(scan_, scan,
-                          shader::CompactPush{.firstCount = first ? 0 : groupCount_ + 1,
-                                              .groupCount = groupCount_,
-                                              .firstChunk = first ? 0 : chunks,
-                                              .chunkCount = chunks},
-                          shader::kScanThreads);
+  commands.dispatchLinear(scan_, scan, shader::CompactPush{.groupCount = groupCount_, .chunkCount = cut_.chunkCount}, shader::kScanThreads);
   commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
   for (const Level& level : levels) {
     const std::array<Binding, 5> bindings{&frame_, level.parents, &masks_, &cut_.groupOffsets, &cut_.indices};
     if (level.push.slotCount > 0)
-      commands.dispatchLinear(write_, bindings, level.push,
-                              groupsFor(level.push.slotCount) * shader::kCutThreads);
+      commands.dispatchLinear(write_, bindings, level.push, groupsFor(level.push.slotCount) * shader::kCutThreads);
   }
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-/// Counts the drawn blocks of each level by the offsets of the levels' first workgroups, in both parts.
+/// Counts the drawn blocks of each level by the offsets of the levels' first workgroups.
 std::vector<std::uint64_t> CutPass::drawnByLevel() const {
   std::vector<std::uint32_t> offsets(cut_.groupOffsets.bytes() / sizeof(std::uint32_t));
   download(device_, cut_.groupOffsets, std::as_writable_bytes(std::span(offsets)));
@@ -224,9 +184,7 @@ std::vector<std::uint64_t> CutPass::drawnByLevel() const {
   for (std::size_t level = 0; level < firstGroups_.size(); ++level) {
     const std::uint32_t begin = firstGroups_[level];
     const std::uint32_t end = level + 1 < firstGroups_.size() ? firstGroups_[level + 1] : groupCount_;
-    std::uint64_t count = offsets[end] - offsets[begin];
-    if (hasDeferred_) count += offsets[groupCount_ + 1 + end] - offsets[groupCount_ + 1 + begin];
-    drawn.push_back(count);
+    drawn.push_back(offsets[end] - offsets[begin]);
   }
   return drawn;
 }

@@ -96,6 +96,12 @@ TEST(SceneJson, DescriptionsSurviveTheWayToAFileAndBack) {
   }
 }
 
+TEST(SceneJson, FormerWordsOfTheMethodAreThoseOfNothingGiven) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "s.json", R"({"method": {"draw": "auto", "attenuation": "exact", "lod": 2}})");
+  EXPECT_EQ(readScene(folder / "s.json").method, MethodDescription{.lod = 2.0});
+}
+
 TEST(SceneJson, TheTestsAboveHaveEveryField) {
   const TemporaryFolder folder;
   const SceneDescription a = everything(folder), b = others(folder);

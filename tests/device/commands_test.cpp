@@ -95,10 +95,10 @@ class FrameTest : public CommandsTest {
   static std::vector<FrameSettings> kindsOfFrames() {
     const Lighting lit{.lights = {{.place = {0.3, 1.0, 0.2}}}, .ambient = glm::dvec3(0.2)};
     std::vector<FrameSettings> kinds;
-    for (const Draw draw : {Draw::Gather, Draw::Splats}) {
-      kinds.push_back({.size = {70, 50}, .draw = draw});
-      kinds.push_back({.size = {70, 50}, .draw = draw, .depth = true, .lighting = lit});
-    }
+    kinds.push_back({.size = {70, 50}});
+    kinds.push_back({.size = {70, 50}, .depth = true, .lighting = lit});
+    kinds.push_back({.size = {70, 50}, .method = SplatSettings{}});
+    kinds.push_back({.size = {70, 50}, .method = SplatSettings{}, .depth = true, .lighting = lit});
     return kinds;
   }
   /// Every pass and every few workgroups get a slice of their own in the next frame.

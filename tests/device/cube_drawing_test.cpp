@@ -32,9 +32,9 @@ class CubeDrawingTest : public DeviceTest {
   }
 
   static FrameSettings litSettings(std::vector<Light> lights) {
-    FrameSettings settings{.size = {96, 80}, .draw = Draw::Gather, .depth = true};
+    FrameSettings settings{.size = {96, 80}, .depth = true};
     settings.lighting = Lighting{.lights = std::move(lights), .ambient = glm::dvec3(0.2, 0.3, 0.4), .attenuation = LightAttenuation::Exact};
-    settings.sampleTolerance = 0.0f;  // as cubes have every ray marched
+    settings.gather().sampleTolerance = 0.0f;  // as cubes have every ray marched
     return settings;
   }
 
@@ -213,7 +213,7 @@ TEST_F(CubeDrawingTest, WhatNeedsTheWholeVolumeIsSaid) {
   const FrameSettings settings = litSettings(std::vector<Light>(4));
   EXPECT_EQ(why(settings), "");
   FrameSettings other = settings;
-  other.draw = Draw::Splats;
+  other.method = SplatSettings{};
   EXPECT_NE(why(other), "");
   other = settings;
   other.lighting->attenuation = LightAttenuation::Table;

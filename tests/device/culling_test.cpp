@@ -38,11 +38,11 @@ class CullingTest : public DeviceTest {
     CutCounts counts;
     std::uint64_t voxels = 0;
   };
-  /// At the default threshold.
+  static constexpr float kHidden = 1.0f / 512.0f;
   static Outcome expectSameImage(Renderer& renderer, const Camera& camera, FrameSettings settings, const std::string& name) {
-    settings.culling = false;
+    settings.splats().culling = false;
     const Image expected = renderer.render(camera, settings);
-    settings.culling = true;
+    settings.splats().culling = true;
     const Image image = renderer.render(camera, settings);
     EXPECT_LE(largestPixelDifference(image, expected), kCullingDifference) << name;
     EXPECT_GE(psnr(image, expected), kCullingPsnr) << name;
@@ -76,9 +76,10 @@ TEST_F(CullingTest, WhatIsLeftOutDoesNotShowFromAnywhere) {
                                       180.0 * uniform(generator) - 90.0, 1.0, {.orthographic = i == 1});
         camera.position =
             camera.lookAt + (0.4 + 2.0 * uniform(generator)) * (camera.position - camera.lookAt);
-        const FrameSettings settings{.size = {112, 96},
-                                     .composite = i == 2 ? Composite::Additive : Composite::Normalised,
-                                     .lod = i == 3 ? 3.0f : 0.0f};
+        const FrameSettings settings{
+            .size = {112, 96},
+            .method = SplatSettings{.composite = i == 2 ? Composite::Additive : Composite::Normalised, .cullThreshold = kHidden},
+            .lod = i == 3 ? 3.0f : 0.0f};
         hidden += expectSameImage(renderer, camera, settings,
                                   fmt::format("{}, camera {}, {} directions, code {}", subject.name, i, directionCount(table.directions),
                                               int(table.code)))
@@ -93,14 +94,15 @@ TEST_F(CullingTest, MostOfAnOpaqueHeadIsNeverDrawn) {
   // Each voxel by itself, whatever the resolution.
   scene.classification.transferFunction->unitDistance = scene.volume.voxelSize();
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  const Outcome outcome = expectSameImage(renderer, viewCamera(scene.volume, {}), {.size = {256, 256}}, "opaque head");
+  const Outcome outcome = expectSameImage(renderer, viewCamera(scene.volume, {}),
+                                          {.size = {256, 256}, .method = SplatSettings{.cullThreshold = kHidden}}, "opaque head");
   EXPECT_LT(double(drawnBlocks(outcome.counts)), 0.30 * double(outcome.voxels));
 }
 
 /// A channel along (3, 1, 2), between the directions of the table, into an opaque box, and a red voxel at its
 /// end. From every voxel that a pixel looks at through it, the directions of the table meet its walls: to the
 /// table all are hidden.
-TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShows) {
+TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShowsWhereNothingIsHidden) {
   const glm::ivec3 dimensions(64);
   const glm::dvec3 end(44.0, 29.0, 40.0), along = glm::normalize(glm::dvec3(3.0, 1.0, 2.0));
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [&](int x, int y, int z) {
@@ -117,12 +119,10 @@ TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShows) {
   Renderer renderer(device(), volume, classification, {});
   const glm::dvec3 position(volume.indexToWorld * glm::dvec4(end, 1.0));
   const Camera camera{.position = position + 2.0 * along, .lookAt = position, .verticalFov = 30.0};
-  const FrameSettings settings{.size = {161, 161}};
-  const Outcome outcome = expectSameImage(renderer, camera, settings, "hole");
-  EXPECT_GT(outcome.counts.hidden, 100u);
+  const FrameSettings settings{.size = {161, 161}, .method = SplatSettings{}};
   const glm::vec4 middle = renderer.render(camera, settings).pixels[80 * 161 + 80];
   EXPECT_GT(middle.r, 0.03f);  // the bottom's voxels have some of the walls' blue
-  EXPECT_LT(RendererStages(renderer).renderSums(camera, settings)[80 * 161 + 80].energy, settings.cullThreshold);
+  EXPECT_LT(RendererStages(renderer).renderSums(camera, settings)[80 * 161 + 80].energy, kHidden);
 }
 
 TEST_F(CullingTest, WhatIsOutsideOfTheImageIsNotDrawn) {
@@ -134,10 +134,10 @@ TEST_F(CullingTest, WhatIsOutsideOfTheImageIsNotDrawn) {
       camera.lookAt += glm::dvec3(0.1, -0.05, 0.02);
       camera.verticalFov /= zoom;
       camera.orthographicHeight /= zoom;
-      FrameSettings settings{.size = {90, 60}, .lod = 0.0f, .cullThreshold = 0.0f};
+      FrameSettings settings{.size = {90, 60}, .method = SplatSettings{.cullThreshold = 0.0f}, .lod = 0.0f};
       const Image image = renderer.render(camera, settings);
       const CutCounts counts = renderer.cutCounts();
-      settings.culling = false;
+      settings.splats().culling = false;
       EXPECT_LE(largestPixelDifference(image, renderer.render(camera, settings)), kFrustumDifference);
       EXPECT_LT(double(drawnBlocks(counts)), (zoom > 2.0 ? 0.2 : 1.0) * double(*renderer.occupiedVoxelCount()));
       EXPECT_GT(counts.outside, 0u);
@@ -152,7 +152,7 @@ TEST_F(CullingTest, CountsAddUp) {
   Renderer renderer(device(), volume, {.densityScale = 300.0}, {});
   Camera camera = framingCamera(volume, 35.0, 25.0, 1.5, {});
   camera.verticalFov /= 2.0;
-  renderer.render(camera, {.size = {120, 80}, .lod = 0.0f});
+  renderer.render(camera, {.size = {120, 80}, .method = SplatSettings{.cullThreshold = kHidden}, .lod = 0.0f});
   const CutCounts counts = renderer.cutCounts();
   EXPECT_GT(counts.outside, 0u);
   EXPECT_GT(counts.hidden, 0u);
@@ -165,12 +165,12 @@ TEST_F(CullingTest, CountsAddUp) {
   for (const Block& block : drawn) once.insert({block.cell.x, block.cell.y, block.cell.z});
   EXPECT_EQ(once.size(), drawn.size());
 
-  renderer.render(camera, {.size = {120, 80}, .lod = 0.0f, .culling = false});
+  renderer.render(camera, {.size = {120, 80}, .method = SplatSettings{.culling = false}, .lod = 0.0f});
   EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.occupiedVoxelCount()});
 }
 
-/// The table counts from the outside; rays from the eye have no bounds; sorted images are of all voxels;
-/// and where nothing is dark in all of four directions there is nothing to ask.
+/// The table counts from the outside; sorted images are of all voxels; and where nothing is dark in all of four directions there is nothing
+/// to ask.
 TEST_F(CullingTest, NothingIsHiddenWhereTheTableCannotTell) {
   const glm::ivec3 dimensions(40);
   const Volume volume = opaqueBox(dimensions, cubeTransform(dimensions));
@@ -178,28 +178,26 @@ TEST_F(CullingTest, NothingIsHiddenWhereTheTableCannotTell) {
   const Camera outside = framingCamera(volume, 35.0, 25.0, 1.0, {});
   Camera inside = outside;
   inside.position = inside.lookAt + 0.1 * (inside.position - inside.lookAt);
-  const FrameSettings exact{.size = {64, 64}, .attenuation = AttenuationLookup::Exact, .lod = 0.0f};
-  const FrameSettings sorted{.size = {64, 64}, .composite = Composite::Sorted};
-  for (const auto& [camera, settings] : {std::pair(inside, FrameSettings{.size = {64, 64}, .lod = 0.0f}),
-                                         {outside, exact},
-                                         {outside, sorted}}) {
+  const FrameSettings hiding{.size = {64, 64}, .method = SplatSettings{.cullThreshold = kHidden}, .lod = 0.0f};
+  const FrameSettings sorted{.size = {64, 64}, .method = SplatSettings{.composite = Composite::Sorted, .cullThreshold = kHidden}};
+  for (const auto& [camera, settings] : {std::pair(inside, hiding), {outside, sorted}}) {
     renderer.render(camera, settings);
     EXPECT_EQ(renderer.cutCounts().hidden, 0u);
   }
   EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.occupiedVoxelCount()});
 
   Renderer thin(device(), volume, {.densityScale = 1.0}, {});
-  thin.render(outside, {.size = {64, 64}, .lod = 0.0f});
+  thin.render(outside, hiding);
   EXPECT_EQ(thin.cutCounts().considered, *thin.occupiedVoxelCount());
 }
 
 TEST_F(CullingTest, TheSameFrameTwiceIsBitIdentical) {
   const QualityScene scene = qualityScene("head", QualityColor::Skin, 48);
   const Camera camera = viewCamera(scene.volume, {});
-  const FrameSettings settings{.size = {100, 100}, .depth = true};
+  const FrameSettings settings{.size = {100, 100}, .method = SplatSettings{.cullThreshold = kHidden}, .depth = true};
   Renderer first(device(), scene.volume, scene.classification, {});
   const Image a = first.render(camera, settings);
-  first.render(viewCamera(scene.volume, {.azimuth = 200.0}), {.size = {140, 60}});
+  first.render(viewCamera(scene.volume, {.azimuth = 200.0}), {.size = {140, 60}, .method = SplatSettings{}});
   const Image b = first.render(camera, settings);
   EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec4)), 0);
   EXPECT_EQ(std::memcmp(a.depth.data(), b.depth.data(), a.depth.size() * sizeof(float)), 0);
@@ -209,8 +207,10 @@ TEST_F(CullingTest, SumsAreOfEverything) {
   const QualityScene scene = qualityScene("head", QualityColor::Skin, 32);
   const Camera camera = viewCamera(scene.volume, {});
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  const auto sums = RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .lod = 0.0f});
-  const auto whole = RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .lod = 0.0f, .culling = false});
+  const auto sums =
+      RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .method = SplatSettings{.cullThreshold = kHidden}, .lod = 0.0f});
+  const auto whole =
+      RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .method = SplatSettings{.culling = false}, .lod = 0.0f});
   for (std::size_t i = 0; i < sums.size(); ++i) ASSERT_EQ(sums[i].depth, whole[i].depth);
 }
 

@@ -107,13 +107,13 @@ TEST_F(EmissionTest, EveryVoxelWithExtinctionOrLightIsKept) {
 TEST_F(EmissionTest, EveryCompositeAndLookUpMatchesTheReference) {
   const Volume volume = hotVolume(true);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.25, {});
-  FrameSettings lit{.size = {40, 32}, .lod = 0.0f, .lighting = Lighting{.ambient = glm::dvec3(0.5)}};
+  FrameSettings lit{.size = {40, 32}, .method = SplatSettings{}, .lod = 0.0f, .lighting = Lighting{.ambient = glm::dvec3(0.5)}};
   lit.lighting->lights.push_back({.place = {1.0, 0.7, 0.2}});
   lit.lighting->surface = 0.5;
   expectSameImages(volume, hot(volume),
-                   {{camera, {.size = {60, 48}, .lod = 0.0f}},
-                    {camera, {.size = {60, 48}, .composite = Composite::Additive, .lod = 0.0f}},
-                    {camera, {.size = {40, 32}, .attenuation = AttenuationLookup::Exact, .lod = 0.0f}},
+                   {{camera, {.size = {60, 48}, .method = SplatSettings{}, .lod = 0.0f}},
+                    {camera, {.size = {60, 48}, .method = SplatSettings{.composite = Composite::Additive}, .lod = 0.0f}},
+                    {camera, {.size = {40, 32}, .method = SplatSettings{}, .lod = 0.0f}},
                     {camera, lit}});
 }
 
@@ -126,12 +126,12 @@ TEST_F(EmissionTest, FlamesWithoutSmokeMatchTheReference) {
   inside.position = {0.02, 0.03, 0.01};
   inside.lookAt = {0.3, 0.1, -0.2};
   expectSameImages(volume, classification,
-                   {{camera, {.size = {40, 40}, .lod = 0.0f}},
-                    {camera, {.size = {40, 40}, .lod = 9.0f}},
-                    {inside, {.size = {40, 40}}},
-                    {inside, {.size = {40, 40}, .attenuation = AttenuationLookup::Bilinear}}});
+                   {{camera, {.size = {40, 40}, .method = SplatSettings{}, .lod = 0.0f}},
+                    {camera, {.size = {40, 40}, .method = SplatSettings{}, .lod = 9.0f}},
+                    {inside, {.size = {40, 40}, .method = SplatSettings{}}},
+                    {inside, {.size = {40, 40}, .method = SplatSettings{}}}});
   Renderer renderer(device(), volume, classification, {});
-  for (const glm::vec4& pixel : renderer.render(camera, {.size = {40, 40}}).pixels) EXPECT_EQ(pixel.a, 0.0f);
+  for (const glm::vec4& pixel : renderer.render(camera, {.size = {40, 40}, .method = SplatSettings{}}).pixels) EXPECT_EQ(pixel.a, 0.0f);
 }
 
 TEST_F(EmissionTest, LevelsAndTheirImagesMatchTheReference) {
@@ -143,16 +143,16 @@ TEST_F(EmissionTest, LevelsAndTheirImagesMatchTheReference) {
   for (const Check& check : compareLevels(volume, voxels, RendererStages(renderer).downloadLevels(), {}, "depth8"))
     EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " " << check.where;
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  expectSameImages(
-      volume, classification,
-      {{camera, {.size = {30, 30}, .lod = 6.0f, .culling = false}}, {camera, {.size = {30, 30}, .lod = 20.0f, .culling = false}}});
+  expectSameImages(volume, classification,
+                   {{camera, {.size = {30, 30}, .method = SplatSettings{.culling = false}, .lod = 6.0f}},
+                    {camera, {.size = {30, 30}, .method = SplatSettings{.culling = false}, .lod = 20.0f}}});
 }
 
 TEST_F(EmissionTest, SortedImagesMatchTheReference) {
   const Volume volume = hotVolume(true);
   const Classification classification = hot(volume);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {50, 50}, .composite = Composite::Sorted};
+  const FrameSettings settings{.size = {50, 50}, .method = SplatSettings{.composite = Composite::Sorted}};
   Renderer renderer(device(), volume, classification, {});
   const Image image = renderer.render(camera, settings);
   const Image expected = referenceSortedImage(volume, classification, camera, settings, RendererStages(renderer).downloadBlockList());
@@ -184,9 +184,9 @@ TEST_F(EmissionTest, CullingLeavesALampInSmokeThere) {
   const Classification classification{.densityScale = 20.0, .emission = Emission{.strength = 4000.0}};
   Renderer renderer(device(), volume, classification, {});
   const Camera camera = framingCamera(volume, 20.0, 15.0, 1.0, {});
-  FrameSettings settings{.size = {64, 64}};
+  FrameSettings settings{.size = {64, 64}, .method = SplatSettings{}};
   const Image image = renderer.render(camera, settings);
-  settings.culling = false;
+  settings.splats().culling = false;
   const Image expected = renderer.render(camera, settings);
   EXPECT_LE(largestPixelDifference(image, expected), 1e-2);
   EXPECT_GT(expected.pixels[32 * 64 + 32].r, 1.5f);
@@ -197,7 +197,7 @@ TEST_F(EmissionTest, AFaintLightLeavesEmissionAsItIs) {
   const Volume volume = hotVolume(true, {19, 23, 17});
   Renderer renderer(device(), volume, hot(volume, 1.0f), {});
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  FrameSettings settings{.size = {64, 64}, .lighting = Lighting{}};
+  FrameSettings settings{.size = {64, 64}, .method = SplatSettings{}, .lighting = Lighting{}};
   const Image alone = renderer.render(camera, settings);
   settings.lighting = Lighting{.lights = {{.place = {0.3, 1.0, 0.4}, .intensity = 1e-9}}};
   EXPECT_GE(psnr(renderer.render(camera, settings), alone), 65.0);
@@ -217,7 +217,7 @@ TEST_F(EmissionTest, AlbedoGridsMatchTheReference) {
   const auto table = RendererStages(renderer).downloadTable();
   const auto levels = RendererStages(renderer).downloadLevels();
   for (const float lod : {0.0f, 9.0f}) {
-    const FrameSettings settings{.size = {40, 40}, .lod = lod, .culling = false};
+    const FrameSettings settings{.size = {40, 40}, .method = SplatSettings{.culling = false}, .lod = lod};
     const Image image = renderer.render(camera, settings);
     const auto sums =
         referenceBlockSums(volume, classification,

@@ -33,61 +33,8 @@ TEST_F(EyeInsideTest, MatchesTheReferenceWhereverItIs) {
   const Volume v = volume(true);
   const glm::dvec3 directions[] = {{1.0, 0.3, -0.4}, {-0.2, -1.0, 0.3}, {0.1, 0.2, 1.0}};
   for (const glm::dvec3 direction : directions) {
-    expectSameImage(v, at(v, {5.31, 6.63, 4.17}, direction), {.size = {48, 40}});
-    expectSameImage(v, at(v, {-1.17, 5.93, 3.36}, direction), {.size = {48, 40}});  // kernels reach it
-  }
-}
-
-/// In front of the box, where rays and the table have a share each.
-TEST_F(EyeInsideTest, MatchesTheReferenceNearTheBox) {
-  const Volume v = volume(true);
-  for (const glm::dvec3 place : {glm::dvec3(-2.1, 6.0, 4.0), {5.0, 15.5, 10.0}, {4.0, 6.0, -4.0}}) {
-    const Camera camera =
-        at(v, place, glm::dvec3(v.indexToWorld * glm::dvec4(glm::dvec3(5.0, 6.5, 4.0) - place, 0.0)));
-    const double share = rayShare(AttenuationLookup::Auto, camera, v.dimensions, v.indexToWorld);
-    EXPECT_GT(share, 0.1);
-    EXPECT_LT(share, 0.9);
-    expectSameImage(v, camera, {.size = {40, 32}});
-    expectSameImage(v, camera, {.size = {40, 32}, .composite = Composite::Additive, .gradient = false});
-  }
-}
-
-/// Through the face, and in front of it: the image changes as that of rays alone does, and by no step from
-/// the table's.
-TEST_F(EyeInsideTest, NoStepShowsOnTheWayIntoTheBox) {
-  const QualityScene scene =
-      makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
-  Renderer renderer(device(), scene.volume, scene.classification, {});
-  std::vector<Image> images, exact, table;
-  for (const double out : {1e-3, -1e-3, 0.1, 0.102}) {  // of the box's edge
-    const glm::dvec3 eye(15.1, 16.3, 31.5 + 32.0 * out);
-    const Camera camera = at(scene.volume, eye, {0.05, -0.1, -1.0});
-    images.push_back(renderer.render(camera, {.size = {64, 64}}));
-    exact.push_back(renderer.render(camera, {.size = {64, 64}, .attenuation = AttenuationLookup::Exact}));
-    table.push_back(renderer.render(camera, {.size = {64, 64}, .attenuation = AttenuationLookup::Bilinear}));
-  }
-  const auto wrong = [&](std::size_t a, std::size_t b) { return wrongChange(images[a], images[b], exact[a], exact[b]); };
-  for (const std::size_t i : {0u, 2u})
-    EXPECT_LT(wrong(i, i + 1), 0.1 * compareImages(table[i], exact[i]).rmse) << i;
-}
-
-/// Auto takes the table then, and says so; what was asked for fails.
-TEST_F(EyeInsideTest, WithoutRoomForRaysAutoIsTheTable) {
-  const Volume v = volume(false);
-  Renderer renderer(device(), v, physical(20.0), {});
-  for (const glm::dvec3 place : {glm::dvec3(5.31, 6.63, 4.17), {5.0, 6.0, -2.0}}) {
-    const Camera camera = at(v, place, {0.1, 0.2, 1.0});
-    const FrameSettings table{.size = {32, 32}, .attenuation = AttenuationLookup::Bilinear};
-    const FrameSettings narrow{.size = {32, 32}, .mostRayBytes = 1000};
-    EXPECT_EQ(renderer.render(camera, narrow).pixels, renderer.render(camera, table).pixels);
-    renderer.render(camera, narrow);
-    EXPECT_TRUE(renderer.lackedRoomForRays());
-    EXPECT_NE(renderer.render(camera, {.size = {32, 32}}).pixels, renderer.render(camera, table).pixels);
-    EXPECT_FALSE(renderer.lackedRoomForRays());
-    FrameSettings exact = narrow;
-    exact.attenuation = AttenuationLookup::Exact;
-    test::expectRefusal([&] { renderer.render(camera, exact); }, ErrorKind::OutOfMemory,
-                        {"attenuation = bilinear"});
+    expectSameImage(v, at(v, {5.31, 6.63, 4.17}, direction), {.size = {48, 40}, .method = SplatSettings{}});
+    expectSameImage(v, at(v, {-1.17, 5.93, 3.36}, direction), {.size = {48, 40}, .method = SplatSettings{}});  // kernels reach it
   }
 }
 
@@ -97,25 +44,24 @@ TEST_F(EyeInsideTest, MatchesTheReferenceAtPlacesOfTheLattice) {
   const Volume v = randomVolume(kSize, glm::dmat4(1.0), 0.6, 1.0);
   for (const glm::dvec3 place :
        {glm::dvec3(5.0, 7.0, 4.0), {5.5, 6.5, 3.5}, {5.0, 6.5, 4.25}, {-0.5, 6.25, 4.125}, {10.5, 13.5, 8.5}})
-    expectSameImage(v, at(v, place, glm::dvec3(5.0, 6.0, 4.0) - 0.5 * place), {.size = {40, 32}});
+    expectSameImage(v, at(v, place, glm::dvec3(5.0, 6.0, 4.0) - 0.5 * place), {.size = {40, 32}, .method = SplatSettings{}});
 }
 
 TEST_F(EyeInsideTest, MatchesTheReferenceInAllDirectionsAndMethods) {
   const Volume v = volume(false);
   const glm::dvec3 place(5.31, 6.63, 4.17);
   for (const glm::dvec3 direction : {glm::dvec3(1, 0.01, 0), {-1, 0.01, 0}, {0.01, 0, 1}, {0.01, 0, -1}}) {
-    expectSameImage(v, at(v, place, direction),
-                    {.size = {40, 40}, .composite = Composite::Additive, .attenuation = AttenuationLookup::Exact});
+    expectSameImage(v, at(v, place, direction), {.size = {40, 40}, .method = SplatSettings{.composite = Composite::Additive}});
     for (const AttenuationLookup lookup : {AttenuationLookup::Bilinear, AttenuationLookup::Nearest})
-      expectSameImage(v, at(v, place, direction), {.size = {40, 40}, .attenuation = lookup});
+      expectSameImage(v, at(v, place, direction), {.size = {40, 40}, .method = SplatSettings{.attenuation = lookup}});
   }
-  expectSameImage(v, at(v, place, {1, 0.5, 0}, 150.0), {.size = {64, 48}, .gradient = false});
+  expectSameImage(v, at(v, place, {1, 0.5, 0}, 150.0), {.size = {64, 48}, .method = SplatSettings{.gradient = false}});
 }
 
 /// Voxels just in front of the eye plane overflow nothing, and voxels beside the image stay beside it.
 TEST_F(EyeInsideTest, LargeImagesOfNearVoxelsMatchTheReference) {
   const Volume v = volume(false);
-  expectSameImage(v, at(v, {5.31, 6.63, 4.17}, {1.0, 0.2, 0.1}, 20.0), {.size = {200, 160}});
+  expectSameImage(v, at(v, {5.31, 6.63, 4.17}, {1.0, 0.2, 0.1}, 20.0), {.size = {200, 160}, .method = SplatSettings{}});
 }
 
 TEST_F(EyeInsideTest, AnOrthographicEyePlaneInsideMatchesTheReference) {
@@ -123,7 +69,7 @@ TEST_F(EyeInsideTest, AnOrthographicEyePlaneInsideMatchesTheReference) {
   Camera camera = at(v, {5.31, 6.63, 4.17}, {0.5, 0.3, -1.0});
   camera.orthographic = true;
   camera.orthographicHeight = 1.0;
-  expectSameImage(v, camera, {.size = {60, 60}});
+  expectSameImage(v, camera, {.size = {60, 60}, .method = SplatSettings{}});
 }
 
 TEST_F(EyeInsideTest, NothingBehindTheEyeShows) {
@@ -133,7 +79,7 @@ TEST_F(EyeInsideTest, NothingBehindTheEyeShows) {
   Renderer renderer(device(), v, physical(100.0), {});
   for (const Composite composite : {Composite::Normalised, Composite::Additive, Composite::Sorted})
     for (const double fov : {60.0, 120.0}) {
-      const FrameSettings settings{.size = {32, 32}, .composite = composite};
+      const FrameSettings settings{.size = {32, 32}, .method = SplatSettings{.composite = composite}};
       const Image away = renderer.render(at(v, {7.0, 7.6, 7.7}, {1, 0, 0}, fov), settings);
       for (const glm::vec4& pixel : away.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
       const Image towards = renderer.render(at(v, {7.0, 7.6, 7.7}, {-1, 0, 0}, fov), settings);
@@ -150,7 +96,7 @@ TEST_F(EyeInsideTest, AHomogeneousCubeIsBeerLambertFromWithin) {
   for (const glm::dvec3 place : {glm::dvec3(11.5), {12.0, 12.0, 12.0}, {9.3, 13.6, 10.8}}) {
     const Camera camera = at(v, place, {0.0, 0.0, -1.0}, 50.0);
     const glm::ivec2 size(40);
-    const Image image = renderer.render(camera, {.size = size});
+    const Image image = renderer.render(camera, {.size = size, .method = SplatSettings{}});
     const PixelRays rays = pixelRays(camera, size, v.indexToWorld);
     for (int y = 0; y < size.y; ++y)
       for (int x = 0; x < size.x; ++x) {
@@ -196,8 +142,9 @@ TEST_F(EyeInsideTest, ASingleVoxelSeenFromItsMiddleIsHalfAVoxelDeep) {
   const Volume v = makeVolume({1, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; });
   Renderer renderer(device(), v, physical(0.5), {});
   for (const glm::dvec3 direction : {glm::dvec3(1.0, 0.2, 0.1), {-0.1, -1.0, 0.3}})
-    for (const AttenuationLookup lookup : {AttenuationLookup::Auto, AttenuationLookup::Nearest}) {
-      const Image image = renderer.render(at(v, glm::dvec3(0.0), direction), {.size = {9, 9}, .attenuation = lookup});
+    for (const AttenuationLookup lookup : {AttenuationLookup::Bilinear, AttenuationLookup::Nearest}) {
+      const Image image =
+          renderer.render(at(v, glm::dvec3(0.0), direction), {.size = {9, 9}, .method = SplatSettings{.attenuation = lookup}});
       for (const glm::vec4& pixel : image.pixels) ASSERT_NEAR(pixel.a, -std::expm1(-0.5 * kFootprintPeak / 2.0), 1e-5);
     }
 }
@@ -208,7 +155,8 @@ TEST_F(EyeInsideTest, SmallStepsOfTheEyeChangeTheImageALittle) {
   Renderer renderer(device(), v, physical(20.0), {});
   std::vector<Image> images;
   for (int i = 0; i < 60; ++i)  // past voxels' centres and the planes between them
-    images.push_back(renderer.render(at(v, {4.7 + 0.01 * i, 6.8 + 0.01 * i, 4.0}, {1.0, 0.2, 0.1}), {.size = {24, 24}}));
+    images.push_back(
+        renderer.render(at(v, {4.7 + 0.01 * i, 6.8 + 0.01 * i, 4.0}, {1.0, 0.2, 0.1}), {.size = {24, 24}, .method = SplatSettings{}}));
   double least = 1.0, most = 0.0;
   for (std::size_t i = 1; i < images.size(); ++i) {
     const double change = largestPixelDifference(images[i], images[i - 1]);

@@ -11,9 +11,7 @@ namespace freevoxels {
 
 class GatherTest : public SplatTest {
  protected:
-  static FrameSettings gathering(glm::ivec2 size) {
-    return {.size = size, .draw = Draw::Gather, .lod = 0.0f};
-  }
+  static FrameSettings gathering(glm::ivec2 size) { return {.size = size, .lod = 0.0f}; }
   /// Looks along -z at the volume's middle with this many pixels a voxel.
   static Camera alongZ(const Volume& volume, glm::ivec2 size, double pixelsPerVoxel) {
     Camera camera;

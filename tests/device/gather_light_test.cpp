@@ -16,9 +16,9 @@ TEST_F(GatherLightTest, LitVolumesAreAsNearToTheOracleAsSplats) {
   for (const double phaseG : {0.0, 0.6}) {
     const Scene scene = cloud(32);
     const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-    const FrameSettings splats{.size = {64, 64}, .draw = Draw::Splats, .lighting = Lighting{.lights = {{}}, .phaseG = phaseG}};
+    const FrameSettings splats{.size = {64, 64}, .method = SplatSettings{}, .lighting = Lighting{.lights = {{}}, .phaseG = phaseG}};
     FrameSettings gather = splats;
-    gather.draw = Draw::Gather;
+    gather.method = GatherSettings{};
     const std::vector<double> quality = qualitiesOf(scene, camera, {splats, gather});
     EXPECT_GE(quality[1], quality[0] - 0.3) << phaseG;
   }
@@ -31,10 +31,10 @@ TEST_F(GatherLightTest, PhaseFunctionActsOnLightFromEverywhere) {
   Camera camera = framingCamera(scene.volume, 180.0, 25.0, 1.0, {});
   FrameSettings settings{
       .size = {24, 24},
-      .lighting = Lighting{
-          .ambient = glm::dvec3(0.3), .environment = std::make_shared<Environment>(sky), .phaseG = 0.6, .scattering = 2}};
+      .method = SplatSettings{},
+      .lighting = Lighting{.ambient = glm::dvec3(0.3), .environment = std::make_shared<Environment>(sky), .phaseG = 0.6, .scattering = 2}};
   FrameSettings gather = settings;
-  gather.draw = Draw::Gather;
+  gather.method = GatherSettings{};
   for (const double quality : qualitiesOf(scene, camera, {settings, gather})) EXPECT_GE(quality, 42.0);
   settings = gather;
   camera.position = camera.lookAt + 0.2 * (camera.position - camera.lookAt);
@@ -90,10 +90,10 @@ TEST_F(GatherLightTest, LightOnOpaqueSkinComesNearerToTheOracleThanThatOfSplats)
   QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 32, makeProcedural("head", 32));
   const Scene scene{.volume = head.volume, .classification = head.classification};
   const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-  FrameSettings splats{.size = {64, 64}, .draw = Draw::Splats, .lighting = Lighting{.lights = {{.place = {1.0, 1.0, 1.0}}}}};
+  FrameSettings splats{.size = {64, 64}, .method = SplatSettings{}, .lighting = Lighting{.lights = {{.place = {1.0, 1.0, 1.0}}}}};
   splats.lod = 0.0f;
   FrameSettings gather = splats;
-  gather.draw = Draw::Gather;
+  gather.method = GatherSettings{};
   const std::vector<double> quality = qualitiesOf(scene, camera, {splats, gather});
   EXPECT_GE(quality[1], quality[0] + 5.0);
 }
@@ -196,7 +196,7 @@ TEST_F(GatherLightTest, ChangedLightFromEverywhereIsFoundAgain) {
   const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), scene.volume, scene.classification, {});
   FrameSettings settings = gathering({64, 64});
-  settings.sampleTolerance = 0.0f;  // which rays are interpolated depends on the light
+  settings.gather().sampleTolerance = 0.0f;  // which rays are interpolated depends on the light
   settings.lighting = Lighting{.ambient = glm::dvec3(0.5)};
   const Image half = renderer.render(camera, settings);
   settings.lighting->ambient = glm::dvec3(1.0);

@@ -70,7 +70,7 @@ TEST_F(GatherRaysTest, HaveTheSameBitsBesideOtherRaysAndAlone) {
       SCOPED_TRACE(testing::Message() << "scene " << s << ", lighting " << l);
       FrameSettings settings = gathering({120, 104});
       settings.lighting = lightings[l];
-      settings.sampleTolerance = 0.0f;
+      settings.gather().sampleTolerance = 0.0f;
       settings.lod = l == 1 ? 3.0f : 0.0f;
       Camera base;
       base.orthographic = (s + l) % 2 == 1;

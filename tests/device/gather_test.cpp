@@ -41,7 +41,7 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
   Renderer renderer(device(), volume, classification, {});
   const glm::ivec2 size(n.x, n.y);
   FrameSettings settings = gathering(size);
-  settings.sampleTolerance = 0.0f;
+  settings.gather().sampleTolerance = 0.0f;
   const GatherStages stages = RendererStages(renderer).renderGatherStages(alongZ(volume, size, 1.0), settings);
   ASSERT_EQ(stages.lattice.pitch, 0.5);
   const std::vector<double> extinction = referenceExtinction(volume, classification);
@@ -70,7 +70,8 @@ TEST_F(GatherTest, IsAsNearToTheOracleAsSplats) {
   for (const Camera& base : {Camera{}, orthographic})
     for (const glm::dvec2 angles : {glm::dvec2(35.0, 25.0), {80.0, 10.0}, {200.0, 75.0}}) {
       const Camera camera = framingCamera(scene.volume, angles.x, angles.y, 1.0, base);
-      const std::vector<double> quality = qualitiesOf(scene, camera, {{.size = {128, 128}, .draw = Draw::Splats}, gathering({128, 128})});
+      const std::vector<double> quality =
+          qualitiesOf(scene, camera, {{.size = {128, 128}, .method = SplatSettings{}}, gathering({128, 128})});
       EXPECT_GE(quality[1], quality[0] - 0.3) << angles.x << ' ' << angles.y;
       EXPECT_GE(quality[1], 40.0) << angles.x << ' ' << angles.y;
     }
@@ -224,7 +225,7 @@ TEST_F(GatherTest, ASlowOrthographicZoomShowsNoStepWhereTheLevelChanges) {
   camera.orthographic = true;
   camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, camera);
   const double framed = camera.orthographicHeight;
-  FrameSettings settings{.size = {96, 96}, .draw = Draw::Gather};
+  FrameSettings settings{.size = {96, 96}};
   Image last;
   double largestStep = 0.0, largestError = 0.0;
   for (int i = 0; i < 16; ++i) {
@@ -304,9 +305,9 @@ TEST_F(GatherTest, RaysBetweenSmoothOnesAreInterpolatedWithoutATrace) {
     const Camera camera = framingCamera(volume, 35.0, 25.0, 4.0 / 3.0, {});
     FrameSettings settings = gathering({400, 300});
     const Image adaptive = renderer.render(camera, settings);
-    settings.sampleTolerance = 1e-30f;
+    settings.gather().sampleTolerance = 1e-30f;
     const Image listed = renderer.render(camera, settings);
-    settings.sampleTolerance = 0.0f;
+    settings.gather().sampleTolerance = 0.0f;
     const Image whole = renderer.render(camera, settings);
     EXPECT_GT(std::ranges::count_if(whole.pixels, [](glm::vec4 pixel) { return pixel.r > 0.1f; }), 1000);
     EXPECT_GE(compareImages(adaptive, whole).psnr, 60.0);
@@ -326,7 +327,7 @@ TEST_F(GatherTest, InterpolatedRaysKeepTheEdgesOfDepthBetweenSurfacesOfTheSameCo
   FrameSettings settings = gathering({96, 96});
   settings.depth = true;
   const Image adaptive = renderer.render(camera, settings);
-  settings.sampleTolerance = 0.0f;
+  settings.gather().sampleTolerance = 0.0f;
   const Image whole = renderer.render(camera, settings);
   const auto [nearest, farthest] = std::ranges::minmax(whole.depth);
   const float voxel = float(glm::length(glm::dvec3(steps.indexToWorld[0])));

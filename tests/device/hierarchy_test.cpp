@@ -47,7 +47,7 @@ class HierarchyTest : public DeviceTest {
   void expectReferenceImage(const Volume& volume, const Classification& classification, const Camera& camera, FrameSettings settings,
                             const TableSettings& table = {}) {
     settings.depth = true;
-    settings.culling = false;
+    settings.splats().culling = false;
     Renderer renderer(device(), volume, classification, table);
     const Image image = renderer.render(camera, settings);
     const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
@@ -77,7 +77,7 @@ TEST_F(HierarchyTest, AVolumeOfOneVoxelHasNoLevels) {
   const Volume volume = makeVolume({1, 1, 1}, glm::dmat4(1.0), [](int, int, int) { return 1.0; });
   Renderer renderer(device(), volume, {}, {});
   EXPECT_TRUE(RendererStages(renderer).downloadLevels().empty());
-  renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {1, 1}, .lod = 100.0f});
+  renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {1, 1}, .method = SplatSettings{}, .lod = 100.0f});
   EXPECT_EQ(renderer.cutCounts().drawn, std::vector<std::uint64_t>{1});
 }
 
@@ -115,31 +115,26 @@ TEST_F(HierarchyTest, BlocksSendWhatTheirVoxelsDo) {
   const Volume uniform = makeVolume(even, cubeTransform(even), [](int, int, int) { return 1.0; });
   const Volume random = randomVolume(kOdd, shearedTransform(kOdd), 0.3, 1.0);
   const double sigma = 3.0, halfCode = std::sqrt(kMaximumCodedDepth * sigma) / 255.0;  // at the far side
-  for (const AttenuationLookup attenuation : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
-    for (const Volume* volume : {&uniform, &random}) {
-      const double tolerance = attenuation == AttenuationLookup::Exact ? 1e-3 : halfCode;
-      Renderer renderer(device(), *volume, {.densityScale = sigma}, {});
-      Camera camera = framingCamera(*volume, 0.0, 0.0, 1.0, {.orthographic = true});
-      camera.orthographicHeight *= 3.0;  // the kernels of large blocks are larger than the volume
-      const double pixelsPerVoxel = 400.0 / camera.orthographicHeight * volume->voxelSize();
-      glm::dvec2 finest(0.0);
-      for (const int level : {0, 1, 2, 3, 4}) {
-        const FrameSettings settings{.size = {400, 400},
-                                     .attenuation = attenuation,
-                                     .gradient = false,  // which only the outermost see here
-                                     .lod = float(1.6 * pixelsPerVoxel * (1 << level))};
-        glm::dvec2 sums(0.0);  // optical depth and energy
-        for (const SplatSums& pixel : RendererStages(renderer).renderSums(camera, settings))
-          sums += glm::dvec2(pixel.depth, pixel.energy);
-        if (level == 0) finest = sums;
-        EXPECT_EQ(renderer.cutCounts().drawn.size(), std::size_t(level) + 1);
-        EXPECT_NEAR(sums.x / finest.x, 1.0, 1e-3) << "level " << level;
-        if (volume == &uniform) {
-          EXPECT_NEAR(sums.y / finest.y, 1.0, tolerance)
-              << "level " << level << ", attenuation " << int(attenuation);
-        }
+  for (const Volume* volume : {&uniform, &random}) {
+    Renderer renderer(device(), *volume, {.densityScale = sigma}, {});
+    Camera camera = framingCamera(*volume, 0.0, 0.0, 1.0, {.orthographic = true});
+    camera.orthographicHeight *= 3.0;  // the kernels of large blocks are larger than the volume
+    const double pixelsPerVoxel = 400.0 / camera.orthographicHeight * volume->voxelSize();
+    glm::dvec2 finest(0.0);
+    for (const int level : {0, 1, 2, 3, 4}) {
+      const FrameSettings settings{.size = {400, 400},
+                                   .method = SplatSettings{.gradient = false},  // which only the outermost see here
+                                   .lod = float(1.6 * pixelsPerVoxel * (1 << level))};
+      glm::dvec2 sums(0.0);  // optical depth and energy
+      for (const SplatSums& pixel : RendererStages(renderer).renderSums(camera, settings)) sums += glm::dvec2(pixel.depth, pixel.energy);
+      if (level == 0) finest = sums;
+      EXPECT_EQ(renderer.cutCounts().drawn.size(), std::size_t(level) + 1);
+      EXPECT_NEAR(sums.x / finest.x, 1.0, 1e-3) << "level " << level;
+      if (volume == &uniform) {
+        EXPECT_NEAR(sums.y / finest.y, 1.0, halfCode) << "level " << level;
       }
     }
+  }
 }
 
 TEST_F(HierarchyTest, EveryVoxelIsDrawnOnceFromAnywhere) {
@@ -156,7 +151,7 @@ TEST_F(HierarchyTest, EveryVoxelIsDrawnOnceFromAnywhere) {
                   .verticalFov = 60.0 + 50.0 * uniform(generator)};
     camera.orthographic = i % 10 == 9;
     const FrameSettings settings{
-        .size = {24, 16}, .lod = float(std::exp(3.0 * uniform(generator))), .culling = false};
+        .size = {24, 16}, .method = SplatSettings{.culling = false}, .lod = float(std::exp(3.0 * uniform(generator)))};
     renderer.render(camera, settings);
     const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
     ASSERT_EQ(coverageErrors(volume, extinction, drawn), 0u) << "camera " << i;
@@ -182,24 +177,22 @@ TEST_F(HierarchyTest, CutsMatchTheReference) {
   const Volume volume = randomVolume(kOdd, shearedTransform(kOdd), 0.6, 1.0);
   Camera near = framingCamera(volume, 35.0, 25.0, 1.2, {});
   near.position = near.lookAt + 0.7 * (near.position - near.lookAt);
-  for (const AttenuationLookup attenuation : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
-    expectReferenceImage(volume, coloured(volume), near, {.size = {60, 50}, .attenuation = attenuation, .lod = 4.0f});
+  expectReferenceImage(volume, coloured(volume), near, {.size = {60, 50}, .method = SplatSettings{}, .lod = 4.0f});
   expectReferenceImage(volume, {.densityScale = 9.0}, near,
-                       {.size = {60, 50}, .composite = Composite::Additive, .gradient = false, .lod = 3.0f},
+                       {.size = {60, 50}, .method = SplatSettings{.composite = Composite::Additive, .gradient = false}, .lod = 3.0f},
                        {.code = AttenuationCode::Linear8, .pathLengthCorrection = false, .directions = DirectionSet::Directions98});
-  expectReferenceImage(volume, {.densityScale = 9.0}, near, {.size = {14, 12}});
-  for (const AttenuationLookup attenuation : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
-    expectReferenceImage(volume, {.densityScale = 9.0}, framingCamera(volume, -110.0, -40.0, 1.0, {.orthographic = true}),
-                         {.size = {50, 50}, .attenuation = attenuation, .lod = 5.0f});
+  expectReferenceImage(volume, {.densityScale = 9.0}, near, {.size = {14, 12}, .method = SplatSettings{}});
+  expectReferenceImage(volume, {.densityScale = 9.0}, framingCamera(volume, -110.0, -40.0, 1.0, {.orthographic = true}),
+                       {.size = {50, 50}, .method = SplatSettings{}, .lod = 5.0f});
 }
 
 TEST_F(HierarchyTest, TheSameCutTwiceIsBitIdentical) {
   const Volume volume = randomVolume(kOdd, cubeTransform(kOdd), 0.6, 9.0);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {64, 64}, .lod = 3.0f};
+  const FrameSettings settings{.size = {64, 64}, .method = SplatSettings{}, .lod = 3.0f};
   Renderer first(device(), volume, {}, {}), second(device(), volume, {}, {});
   const Image a = first.render(camera, settings);
-  first.render(camera, {.size = {64, 64}, .lod = 9.0f});
+  first.render(camera, {.size = {64, 64}, .method = SplatSettings{}, .lod = 9.0f});
   for (const Image& b : {first.render(camera, settings), second.render(camera, settings)})
     EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), a.pixels.size() * sizeof(glm::vec4)), 0);
 }
@@ -208,10 +201,10 @@ TEST_F(HierarchyTest, VoxelsAreDrawnWhereTheyAreLargeOrSorted) {
   const Volume volume = randomVolume(kOdd, cubeTransform(kOdd), 0.6, 9.0);
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), volume, {}, {});
-  for (FrameSettings settings :
-       {FrameSettings{.size = {16, 16}, .lod = 0.0f}, FrameSettings{.size = {200, 200}},
-        FrameSettings{.size = {16, 16}, .composite = Composite::Sorted, .lod = 9.0f}}) {
-    settings.culling = false;
+  for (FrameSettings settings : {FrameSettings{.size = {16, 16}, .method = SplatSettings{}, .lod = 0.0f},
+                                 FrameSettings{.size = {200, 200}, .method = SplatSettings{}},
+                                 FrameSettings{.size = {16, 16}, .method = SplatSettings{.composite = Composite::Sorted}, .lod = 9.0f}}) {
+    settings.splats().culling = false;
     renderer.render(camera, settings);
     EXPECT_EQ(renderer.cutCounts().drawn, std::vector{*renderer.occupiedVoxelCount()});
     for (const StageTime& stage : renderer.timings()) EXPECT_NE(stage.name, "octree table");
@@ -236,7 +229,7 @@ TEST_F(HierarchyTest, TheChecksNoticeWhatIsWrong) {
   EXPECT_EQ(failures([](auto& l) { l.back().table[5][0] ^= 2; }), 1);
 
   std::vector<Block> blocks =
-      referenceCut(volume, voxels.extinction, framingCamera(volume, 0.0, 0.0, 1.0, {}), {.size = {4, 4}});
+      referenceCut(volume, voxels.extinction, framingCamera(volume, 0.0, 0.0, 1.0, {}), {.size = {4, 4}, .method = SplatSettings{}});
   EXPECT_EQ(coverageErrors(volume, voxels.extinction, blocks), 0u);
   blocks.push_back(blocks.front());
   EXPECT_GT(coverageErrors(volume, voxels.extinction, blocks), 0u);

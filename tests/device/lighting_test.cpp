@@ -44,19 +44,19 @@ class LightingTest : public SplatTest {
 TEST_F(LightingTest, EveryKindOfLightMatchesTheReference) {
   const Volume v = volume(true);
   for (const Composite composite : {Composite::Normalised, Composite::Additive})
-    expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.25, {}), {.size = {75, 60}, .composite = composite, .lighting = everything()});
+    expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.25, {}),
+                    {.size = {75, 60}, .method = SplatSettings{.composite = composite}, .lighting = everything()});
 }
 
 TEST_F(LightingTest, EveryLookUpMatchesTheReference) {
   const Volume v = volume(true);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  expectSameImage(v, camera, {.size = {50, 50}, .attenuation = AttenuationLookup::Exact, .lighting = everything()});
-  expectSameImage(v, camera, {.size = {50, 50}, .lighting = everything()}, {.directions = DirectionSet::Directions98});
+  expectSameImage(v, camera, {.size = {50, 50}, .method = SplatSettings{}, .lighting = everything()});
+  expectSameImage(v, camera, {.size = {50, 50}, .method = SplatSettings{}, .lighting = everything()},
+                  {.directions = DirectionSet::Directions98});
   expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {.orthographic = true}),
                   {.size = {50, 50},
-                   .composite = Composite::Additive,
-                   .attenuation = AttenuationLookup::Nearest,
-                   .gradient = false,
+                   .method = SplatSettings{.composite = Composite::Additive, .attenuation = AttenuationLookup::Nearest, .gradient = false},
                    .lighting = everything()},
                   {AttenuationCode::Linear8, false});
 }
@@ -65,7 +65,7 @@ TEST_F(LightingTest, SurfacesMatchTheReference) {
   const Volume v = volume(true);
   Lighting lighting = everything();
   lighting.surface = 0.8;
-  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting});
 }
 
 /// For every look-up, with surfaces and an environment, and several orders of scattering.
@@ -78,10 +78,10 @@ TEST_F(LightingTest, TintsMatchTheReference) {
   lighting.scattering = 3;
   lighting.scatteringScale = 0.6;
   lighting.environment = std::make_shared<Environment>(makeSky(64));
-  expectSameImage(v, camera, {.size = {50, 50}, .lighting = lighting});
-  expectSameImage(v, camera, {.size = {50, 50}, .lighting = lighting}, {.code = AttenuationCode::Linear8});
+  expectSameImage(v, camera, {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting});
+  expectSameImage(v, camera, {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting}, {.code = AttenuationCode::Linear8});
   lighting.attenuation = LightAttenuation::Exact;
-  expectSameImage(v, camera, {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, camera, {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting});
 }
 
 TEST_F(LightingTest, ATintLetsNothingThroughAnOpaqueWall) {
@@ -96,7 +96,7 @@ TEST_F(LightingTest, ATintLetsNothingThroughAnOpaqueWall) {
   for (const LightAttenuation attenuation : {LightAttenuation::Table, LightAttenuation::Exact}) {
     const Lighting lighting{
         .lights = {{.place = {1, 0, 0}}}, .tint = glm::dvec3(kMinTint), .attenuation = attenuation};
-    for (const glm::vec4& pixel : renderer.render(camera, {.size = {24, 24}, .lighting = lighting}).pixels)
+    for (const glm::vec4& pixel : renderer.render(camera, {.size = {24, 24}, .method = SplatSettings{}, .lighting = lighting}).pixels)
       EXPECT_LT(pixel.r, 1e-3f);
   }
 }
@@ -108,19 +108,18 @@ TEST_F(LightingTest, EnvironmentsMatchTheReference) {
   auto sky = std::make_shared<Environment>(makeSky(64));
   sky->rotation = 77.0;
   lighting.environment = sky;
-  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting});
   lighting.lights.clear();
-  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting},
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting},
                   {.directions = DirectionSet::Directions98});
 }
 
-/// While the eye's transmittance is exact as well, so that light from all around alone needs a table. One
-/// renderer takes them in turn.
+/// One renderer takes them in turn.
 TEST_F(LightingTest, AConstantEnvironmentIsAmbientLight) {
   const Volume v = volume(true);
   Renderer renderer(device(), v, coloured(v), {});
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {40, 40}, .attenuation = AttenuationLookup::Exact};
+  const FrameSettings settings{.size = {40, 40}, .method = SplatSettings{}};
   const auto constant = std::make_shared<Environment>(
       Environment{.size = {2, 1}, .radiance = {glm::vec3(0.5f), glm::vec3(0.5f)}, .intensity = 3.0});
   const Lighting exact{.lights = {}, .attenuation = LightAttenuation::Exact};
@@ -143,7 +142,7 @@ TEST_F(LightingTest, LightsInsideMatchTheReference) {
   lighting.lights = {
       {.place = {0.05, 0.12, -0.08}, .atInfinity = false, .intensity = 2.0},
       {.place = {-0.2, 0.1, 0.1}, .atInfinity = false, .color = {1.0, 0.0, 0.0}, .intensity = 2.0}};
-  expectSameImage(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, -110.0, -40.0, 1.0, {}), {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting});
 }
 
 TEST_F(LightingTest, ExactLightsMatchTheReference) {
@@ -151,14 +150,14 @@ TEST_F(LightingTest, ExactLightsMatchTheReference) {
   Lighting lighting = everything();
   lighting.attenuation = LightAttenuation::Exact;
   lighting.lights.push_back({.place = {0.05, 0.12, -0.08}, .atInfinity = false, .intensity = 0.2});
-  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .lighting = lighting});
+  expectSameImage(v, framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting});
 }
 
-/// Turning the camera sweeps nothing again, moving a light does. Without ambient light no table is made.
+/// Turning the camera sweeps nothing again, moving a light does. The gather makes no table without ambient light.
 TEST_F(LightingTest, ExactLightsAreSweptOnceWhileTheyStandStill) {
   const Volume v = volume(false);
   Renderer renderer(device(), v, coloured(v), {});
-  FrameSettings settings{.size = {20, 20}, .attenuation = AttenuationLookup::Exact, .lighting = Lighting{}};
+  FrameSettings settings{.size = {20, 20}, .lighting = Lighting{}};
   settings.lighting->lights.resize(2);
   settings.lighting->attenuation = LightAttenuation::Exact;
   const auto sweeps = [&](double azimuth) {
@@ -166,7 +165,6 @@ TEST_F(LightingTest, ExactLightsAreSweptOnceWhileTheyStandStill) {
     std::vector<std::string> names;
     for (const StageTime& time : renderer.timings()) names.push_back(time.name);
     EXPECT_EQ(std::ranges::count(names, "attenuation sweeps"), 0);
-    EXPECT_EQ(std::ranges::count(names, "ray sweep"), 1);  // the eye's
     return std::ranges::count(names, "light sweep");
   };
   EXPECT_EQ(sweeps(0.0), 1);
@@ -179,11 +177,10 @@ TEST_F(LightingTest, AutoShadowsExactlyWhereTheEyeIsNotLookedUpNearest) {
   const Volume v = volume(true);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), v, coloured(v), {});
-  const auto pixels = [&](LightAttenuation attenuation, std::size_t lights,
-                          AttenuationLookup lookup = AttenuationLookup::Auto) {
+  const auto pixels = [&](LightAttenuation attenuation, std::size_t lights, AttenuationLookup lookup = AttenuationLookup::Bilinear) {
     Lighting lighting{.lights = std::vector<Light>(lights), .attenuation = attenuation};
     for (std::size_t i = 0; i < lights; ++i) lighting.lights[i].place = {double(i) - 1.4, 0.7, 0.3};
-    return renderer.render(camera, {.size = {32, 32}, .attenuation = lookup, .lighting = lighting}).pixels;
+    return renderer.render(camera, {.size = {32, 32}, .method = SplatSettings{.attenuation = lookup}, .lighting = lighting}).pixels;
   };
   using enum LightAttenuation;
   for (const std::size_t lights : {4u, 6u}) {  // found at samples, and by voxel
@@ -199,7 +196,7 @@ TEST_F(LightingTest, AutoShadowsByTheTableWhereMemoryIsShort) {
     return x < 8 && y < 8 && z < 8 ? 1.0 : kInactiveVoxel;
   });
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  FrameSettings settings{.size = {32, 32}, .lighting = Lighting{.lights = {{}}}};
+  FrameSettings settings{.size = {32, 32}, .method = SplatSettings{}, .lighting = Lighting{.lights = {{}}}};
   const auto lightSweeps = [&](std::uint64_t memoryLimit) {
     const Device limited(instance(), "", memoryLimit);
     Renderer renderer(limited, v, coloured(v), {});
@@ -220,7 +217,7 @@ TEST_F(LightingTest, SortedImagesMatchTheReference) {
   const Classification classification = coloured(v, 0.5f);
   const auto extinction = referenceExtinction(v, classification);
   const auto table = referenceTable(v, extinction, {});
-  const FrameSettings settings{.size = {50, 50}, .composite = Composite::Sorted, .lighting = everything()};
+  const FrameSettings settings{.size = {50, 50}, .method = SplatSettings{.composite = Composite::Sorted}, .lighting = everything()};
   const ReferenceLight light(
       {.volume = v, .extinction = extinction, .table = table, .coarser = {}, .tableSettings = {}}, settings);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
@@ -235,7 +232,7 @@ TEST_F(LightingTest, BlocksMatchTheReference) {
   const Volume v = volume(true);
   const Classification classification = coloured(v, 0.5f);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {30, 30}, .lod = 9.0f, .culling = false, .lighting = everything()};
+  const FrameSettings settings{.size = {30, 30}, .method = SplatSettings{.culling = false}, .lod = 9.0f, .lighting = everything()};
   Renderer renderer(device(), v, classification, {});
   const Image image = renderer.render(camera, settings);
   const std::vector<Block> blocks = RendererStages(renderer).downloadDrawnBlocks();
@@ -254,7 +251,7 @@ TEST_F(LightingTest, TwoLightsAreTheSumOfEachAlone) {
   const Volume v = volume(false);
   Renderer renderer(device(), v, coloured(v), {});
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {40, 40}};
+  const FrameSettings settings{.size = {40, 40}, .method = SplatSettings{}};
   for (const LightAttenuation attenuation : {LightAttenuation::Table, LightAttenuation::Exact}) {
     Lighting both = everything();
     both.attenuation = attenuation;
@@ -283,7 +280,7 @@ TEST_F(LightingTest, ALightThatMovesAwayDimsWithTheSquareOfItsDistance) {
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   const glm::dvec3 place(1.0, 2.0, -0.7);
   const auto lit = [&](double far) {
-    return largest(colours(renderer, camera, {.size = {20, 20}},
+    return largest(colours(renderer, camera, {.size = {20, 20}, .method = SplatSettings{}},
                            {.lights = {{.place = far * place, .atInfinity = false}}, .phaseG = 0.6}));
   };
   const double near = lit(1.0);
@@ -304,7 +301,7 @@ TEST_F(LightingTest, AHomogeneousBoxScattersWhatTheClosedFormsSay) {
       .position = {0, 0, 3}, .lookAt = {0, 0, 0}, .orthographic = true, .orthographicHeight = 1.0};
   const auto middle = [&](glm::dvec3 direction, LightAttenuation attenuation) {
     const Lighting lighting{.lights = {{.place = direction}}, .phaseG = kPhaseG, .attenuation = attenuation};
-    const FrameSettings settings{.size = {33, 33}, .lighting = lighting};
+    const FrameSettings settings{.size = {33, 33}, .method = SplatSettings{}, .lighting = lighting};
     return double(renderer.render(camera, settings).pixels[33 * 16 + 16].r);
   };
   const auto scattered = [](double cosine) {
@@ -325,9 +322,9 @@ TEST_F(LightingTest, AThinVolumeIsAsBrightInAmbientLightAsUnlit) {
   const Volume v = volume(true);
   Renderer renderer(device(), v, {.densityScale = 1e-4}, {});
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  const Image unlit = renderer.render(camera, {.size = {40, 40}});
+  const Image unlit = renderer.render(camera, {.size = {40, 40}, .method = SplatSettings{}});
   const Image lit =
-      renderer.render(camera, {.size = {40, 40}, .lighting = Lighting{.ambient = glm::dvec3(1.0)}});
+      renderer.render(camera, {.size = {40, 40}, .method = SplatSettings{}, .lighting = Lighting{.ambient = glm::dvec3(1.0)}});
   for (std::size_t i = 0; i < lit.pixels.size(); ++i)
     EXPECT_NEAR(lit.pixels[i].r, unlit.pixels[i].r, 2e-3 * unlit.pixels[i].r);
 }

@@ -25,7 +25,7 @@ TEST_F(MultipleScatteringTest, ThreeOctavesHaveHalfTheErrorOfSingleScattering) {
   for (const Case& light : {Case{"key", {-0.32, 0.85, 0.42}}, Case{"side", {1.0, 0.2, -0.3}}, Case{"back", {-0.5, 0.4, -1.0}}}) {
     SCOPED_TRACE(light.name);
     const Image truth = readExr(std::filesystem::path(FREEVOXELS_PATH_TRACED) / fmt::format("cloud_{}.exr", light.name));
-    FrameSettings settings{.size = truth.size, .draw = Draw::Gather, .lighting = Lighting{.lights = {{.place = light.toLight}}}};
+    FrameSettings settings{.size = truth.size, .lighting = Lighting{.lights = {{.place = light.toLight}}}};
     settings.lighting->attenuation = LightAttenuation::Exact;
     const Image once = renderer.render(camera, settings);
     settings.lighting->scattering = 3;

@@ -86,7 +86,8 @@ TEST_F(OccupancyTest, BlocksOfAlmostNothingDrawNoNaN) {
   });
   Renderer renderer(device(), volume, {.densityScale = 1.0}, {});
   for (const float lod : {0.0f, 2.0f, 40.0f}) {
-    const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {16, 16}, .lod = lod});
+    const Image image =
+        renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {16, 16}, .method = SplatSettings{}, .lod = lod});
     for (const glm::vec4& pixel : image.pixels)
       for (int c = 0; c < 4; ++c) EXPECT_TRUE(std::isfinite(pixel[c]));
   }
@@ -100,11 +101,12 @@ TEST_F(OccupancyTest, AVolumeThatHoldsNothingIsAnEmptyImage) {
       .transferFunction = TransferFunction{
           .opacity = {{0.0f, 0.0f}, {1.0f, 0.0f}}, .color = {{0.0f, glm::vec3(1.0f)}}, .unitDistance = 1.0}};
   Renderer renderer(device(), volume, classification, {});
-  for (const AttenuationLookup lookup : {AttenuationLookup::Bilinear, AttenuationLookup::Exact})
+  for (const AttenuationLookup lookup : {AttenuationLookup::Bilinear, AttenuationLookup::Nearest})
     for (const float lod : {0.0f, 8.0f})
       for (const Composite composite : {Composite::Normalised, Composite::Sorted}) {
-        const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
-                                            {.size = {24, 24}, .composite = composite, .attenuation = lookup, .lod = lod});
+        const Image image =
+            renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
+                            {.size = {24, 24}, .method = SplatSettings{.composite = composite, .attenuation = lookup}, .lod = lod});
         for (const glm::vec4& pixel : image.pixels) EXPECT_EQ(pixel, glm::vec4(0.0f));
       }
   EXPECT_EQ(renderer.occupiedVoxelCount(), 0u);

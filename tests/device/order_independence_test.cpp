@@ -23,7 +23,7 @@ class OrderIndependenceTest : public DeviceTest {
 
   /// Draws just these voxels, in this order.
   std::vector<SplatSums> draw(const std::vector<std::uint32_t>& voxels) const {
-    return drawVoxels(device(), steps_, voxels, camera_, {.size = {80, 80}});
+    return drawVoxels(device(), steps_, voxels, camera_, {.size = {80, 80}, .method = SplatSettings{}});
   }
 
   /// Largest difference in C, E and T relative to the largest value of each.

@@ -33,7 +33,7 @@ TEST_F(RendererTest, HomogeneousCubeIsBeerLambertFromAnyDirection) {
       camera.position = 3.0 * glm::normalize(camera.position);  // the cube's bounding sphere fits the image
       camera.orthographic = orthographic;
       camera.orthographicHeight = 1.8;
-      const Image image = renderer.render(camera, {.size = size});
+      const Image image = renderer.render(camera, {.size = size, .method = SplatSettings{}});
       const BoxImage box = boxImage(volume, sigma, color, camera, size);
       double worst = 0.0;
       for (std::size_t i = 0; i < box.interior.size(); ++i)
@@ -58,7 +58,7 @@ TEST_F(RendererTest, OpticalDepthAddsUpToBeerLambertInsideTheCube) {
   Renderer renderer(device(), volume, {.densityScale = sigma}, {});
   const Camera camera = framingCamera(volume, 50.0, 30.0, 1.0, {});
   const glm::ivec2 size(101);
-  const Image image = renderer.render(camera, {.size = size});
+  const Image image = renderer.render(camera, {.size = size, .method = SplatSettings{}});
   const Image expected = boxImage(volume, sigma, {}, camera, size).image;
   EXPECT_NEAR(image.pixels[50 * 101 + 50].a, expected.pixels[50 * 101 + 50].a, 1e-3);
 }
@@ -68,8 +68,8 @@ TEST_F(RendererTest, EmptyVolumeIsBackground) {
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 0.0; });
   Renderer renderer(device(), volume, {}, {});
   for (Composite composite : {Composite::Normalised, Composite::Additive}) {
-    const Image image =
-        renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {32, 32}, .composite = composite, .depth = true});
+    const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}),
+                                        {.size = {32, 32}, .method = SplatSettings{.composite = composite}, .depth = true});
     for (const glm::vec4& pixel : image.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
     for (float depth : image.depth) ASSERT_TRUE(std::isinf(depth));
   }
@@ -78,7 +78,7 @@ TEST_F(RendererTest, EmptyVolumeIsBackground) {
 TEST_F(RendererTest, SameRenderTwiceIsBitIdentical) {
   const glm::ivec3 dimensions(40, 50, 45);
   const Volume volume = randomVolume(dimensions, cubeTransform(dimensions), 0.7, 30.0);
-  const FrameSettings settings{.size = {200, 150}};
+  const FrameSettings settings{.size = {200, 150}, .method = SplatSettings{}};
   const Camera camera = framingCamera(volume, 35.0, 25.0, 200.0 / 150.0, {});
   Renderer first(device(), volume, {}, {});
   Renderer second(device(), volume, {}, {});
@@ -96,7 +96,9 @@ TEST_F(RendererTest, MoreSplatsThanOneChunkAreAllDrawn) {
   EXPECT_EQ(*renderer.occupiedVoxelCount(), volume.voxelCount());
   const Camera camera = framingCamera(volume, 0.0, 0.0, 1.0, {});
   const glm::ivec2 size(128);
-  EXPECT_GE(psnr(renderer.render(camera, {.size = size}), boxImage(volume, sigma, glm::vec3(0.9f), camera, size).image), 40.0);
+  EXPECT_GE(psnr(renderer.render(camera, {.size = size, .method = SplatSettings{}}),
+                 boxImage(volume, sigma, glm::vec3(0.9f), camera, size).image),
+            40.0);
 }
 
 TEST_F(RendererTest, MirroredCameraMirrorsTheImage) {
@@ -106,8 +108,8 @@ TEST_F(RendererTest, MirroredCameraMirrorsTheImage) {
   });
   Renderer renderer(device(), volume, {.densityScale = 5.0}, {});
   const glm::ivec2 size(60, 60);
-  const Image right = renderer.render(framingCamera(volume, 40.0, 15.0, 1.0, {}), {.size = size});
-  const Image left = renderer.render(framingCamera(volume, -40.0, 15.0, 1.0, {}), {.size = size});
+  const Image right = renderer.render(framingCamera(volume, 40.0, 15.0, 1.0, {}), {.size = size, .method = SplatSettings{}});
+  const Image left = renderer.render(framingCamera(volume, -40.0, 15.0, 1.0, {}), {.size = size, .method = SplatSettings{}});
   for (int y = 0; y < size.y; ++y)
     for (int x = 0; x < size.x; ++x) {
       const glm::vec4 a = right.pixels[std::size_t(y * size.x + x)],
@@ -124,7 +126,7 @@ TEST_F(RendererTest, TheImageIsTheRightWayRound) {
   Renderer renderer(device(), volume, {.densityScale = 20.0}, {});
   const glm::ivec2 size(40);
   // Seen from +z with y up, x grows to the right; row 0 is the top.
-  const Image image = renderer.render(framingCamera(volume, 0.0, 0.0, 1.0, {}), {.size = size});
+  const Image image = renderer.render(framingCamera(volume, 0.0, 0.0, 1.0, {}), {.size = size, .method = SplatSettings{}});
   const auto alpha = [&](int x, int y) { return image.pixels[std::size_t(y * size.x + x)].a; };
   EXPECT_GT(alpha(32, 7), 0.5f);
   EXPECT_LT(alpha(7, 7), 0.01f);
@@ -137,7 +139,7 @@ TEST_F(RendererTest, AbsurdDensitiesAreOpaqueNotEmpty) {
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 3.0; });
   for (double scale : {1e10, 1e38, 1e300}) {
     Renderer renderer(device(), volume, {.densityScale = scale}, {});
-    const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {21, 21}});
+    const Image image = renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {21, 21}, .method = SplatSettings{}});
     EXPECT_EQ(image.pixels[10 * 21 + 10].a, 1.0f) << scale;
     for (const glm::vec4& pixel : image.pixels) ASSERT_TRUE(std::isfinite(pixel.r + pixel.a)) << scale;
   }
@@ -148,7 +150,7 @@ TEST_F(RendererTest, TooLargeAnImageIsRefusedBeforeAllocation) {
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 1.0; });
   Renderer renderer(device(), volume, {}, {});
   try {
-    renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {1'000'000, 1'000'000}});
+    renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {1'000'000, 1'000'000}, .method = SplatSettings{}});
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::OutOfMemory);
@@ -160,7 +162,7 @@ TEST_F(RendererTest, TooLargeAVolumeIsRefusedBeforeAllocation) {
   volume.dimensions = {40000, 40000, 40000};
   Renderer renderer(device(), volume, {}, {});
   try {
-    renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {16, 16}});
+    renderer.render(framingCamera(volume, 35.0, 25.0, 1.0, {}), {.size = {16, 16}, .method = SplatSettings{}});
     FAIL() << "accepted";
   } catch (const Error& error) {
     EXPECT_EQ(error.kind(), ErrorKind::OutOfMemory);

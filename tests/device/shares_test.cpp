@@ -34,7 +34,7 @@ class SharesTest : public DeviceTest {
   static Scene litFog() {
     Scene scene{.name = "lit fog", .volume = randomVolume({40, 36, 44}, cubeTransform({40, 36, 44}), 0.3, 20.0)};
     scene.camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
-    scene.settings = {.size = {64, 56}, .depth = true, .lighting = Lighting{.ambient = glm::dvec3(0.2)}};
+    scene.settings = {.size = {64, 56}, .method = SplatSettings{}, .depth = true, .lighting = Lighting{.ambient = glm::dvec3(0.2)}};
     scene.settings.lighting->lights = {{.place = {1.0, 0.7, 0.2}}, {.place = {0.1, 0.3, 0.9}, .atInfinity = false, .intensity = 2.0}};
     scene.settings.lighting->surface = 0.5;
     return scene;
@@ -46,7 +46,7 @@ class SharesTest : public DeviceTest {
     scene.camera.position = {0.03, -0.1, 0.02};
     scene.camera.lookAt = {-0.3, 0.2, -0.2};
     scene.camera.verticalFov = 70.0;
-    scene.settings = {.size = {48, 48}};
+    scene.settings = {.size = {48, 48}, .method = SplatSettings{}};
     return scene;
   }
   /// A scan that is classified after interpolation, lit at samples, with surfaces.
@@ -55,7 +55,7 @@ class SharesTest : public DeviceTest {
     scene.classification.transferFunction = scanTransferFunction(scene.volume);
     scene.classification.order = ClassificationOrder::Post;
     scene.camera = framingCamera(scene.volume, 35.0, 20.0, 1.0, {});
-    scene.settings = {.size = {72, 64}, .depth = true, .lighting = Lighting{.ambient = glm::dvec3(0.2)}};
+    scene.settings = {.size = {72, 64}, .method = SplatSettings{}, .depth = true, .lighting = Lighting{.ambient = glm::dvec3(0.2)}};
     scene.settings.lighting->lights = {{.place = {1.0, 0.7, 0.2}}};
     scene.settings.lighting->surface = 0.5;
     return scene;
@@ -63,7 +63,7 @@ class SharesTest : public DeviceTest {
   static std::vector<Scene> gathered() {
     std::vector<Scene> scenes{litFog(), fireFromInside(), levels(), scan()};
     for (Scene& scene : scenes) {
-      scene.settings.draw = Draw::Gather;
+      scene.settings.method = GatherSettings{};
       scene.name += ", gathered";
     }
     return scenes;
@@ -79,7 +79,7 @@ class SharesTest : public DeviceTest {
     scene.camera.position = {0.2, 0.1, 0.9};
     scene.camera.lookAt = {0.2, 0.0, -0.5};
     scene.camera.verticalFov = 40.0;
-    scene.settings = {.size = {56, 64}, .composite = Composite::Additive, .lod = 3.0f};
+    scene.settings = {.size = {56, 64}, .method = SplatSettings{.composite = Composite::Additive}, .lod = 3.0f};
     return scene;
   }
 };
@@ -104,7 +104,7 @@ TEST_F(SharesTest, GatheredLightHasTheSameBitsFromAllSides) {
   scan.transferFunction = TransferFunction{.opacity = {{0.0f, 0.0f}, {0.4f, 0.2f}, {0.5f, 0.0f}}, .color = {{0.0f, glm::vec3(0.8f)}}};
   for (const Classification& classification : {fog, scan}) {
     Renderer renderer(device(), cloud, classification, {});
-    FrameSettings settings{.size = {64, 64}, .draw = Draw::Gather};
+    FrameSettings settings{.size = {64, 64}};
     settings.lighting = Lighting{.lights = {{.place = {1.0, 0.7, 0.2}}}, .ambient = glm::dvec3(0.2)};
     for (int side = 0; side < 8; ++side) {
       SCOPED_TRACE(testing::Message() << "side " << side << (classification.transferFunction ? ", scan" : ", fog"));
@@ -125,7 +125,7 @@ TEST_F(SharesTest, EachOfAllSharesAloneAddsUpToTheWhole) {
   scene.settings.size = {24, 24};
   Renderer renderer(device(), scene.volume, scene.classification, {});
   for (const Draw draw : {Draw::Splats, Draw::Gather}) {
-    scene.settings.draw = draw;
+    if (draw == Draw::Gather) scene.settings.method = GatherSettings{};
     EXPECT_EQ(total(renderer, scene, kShares).values, renderer.renderShares(scene.camera, scene.settings, {}).values);
   }
 }
@@ -134,9 +134,7 @@ TEST_F(SharesTest, TheImageIsThatOfAFrameThatIsDrawnAtOnce) {
   for (Scene scene : {litFog(), fireFromInside(), levels()}) {
     SCOPED_TRACE(scene.name);
     Renderer renderer(device(), scene.volume, scene.classification, {});
-    const Image shared = resolveSums(renderer.renderShares(scene.camera, scene.settings, {}),
-                                     scene.settings.composite == Composite::Normalised);
-    scene.settings.cullThreshold = 0.0f;
+    const Image shared = resolveSums(renderer.renderShares(scene.camera, scene.settings, {}), scene.settings.isNormalised());
     const Image expected = renderer.render(scene.camera, scene.settings);
     float brightest = 0.0f;
     for (const glm::vec4& pixel : expected.pixels) brightest = std::max({brightest, pixel.r, pixel.g, pixel.b, pixel.a});
@@ -174,8 +172,8 @@ TEST_F(SharesTest, GatheredSharesOfAHomogeneousBoxHaveItsTransmittance) {
     for (const double distance : {0.2, 3.0}) {
       Camera camera{.position = distance * way, .lookAt = glm::dvec3(0.0), .up = {way.y, way.z, way.x}};
       camera.verticalFov = 5.0;
-      FixedSums sums = renderer.renderShares(camera, {.size = {8, 8}, .draw = Draw::Gather}, {0, 2});
-      sums += renderer.renderShares(camera, {.size = {8, 8}, .draw = Draw::Gather}, {1, 2});
+      FixedSums sums = renderer.renderShares(camera, {.size = {8, 8}}, {0, 2});
+      sums += renderer.renderShares(camera, {.size = {8, 8}}, {1, 2});
       const double length = std::min(distance, 0.5) + 0.5;
       EXPECT_NEAR(resolveSums(sums, true).pixels[4 * 8 + 4].a, 1.0 - std::exp(-sigma * length), 0.01) << distance;
     }
@@ -202,7 +200,7 @@ TEST_F(SharesTest, TheEyeInTheOutermostHalfVoxelSeesTheSameByShares) {
             camera.lookAt = camera.position + way;
             camera.up = {way.y, way.z, way.x};
             camera.verticalFov = 60.0;
-            const FrameSettings settings{.size = {24, 24}, .draw = Draw::Gather, .lod = lod, .depth = true};
+            const FrameSettings settings{.size = {24, 24}, .lod = lod, .depth = true};
             FixedSums sums = renderer.renderShares(camera, settings, {0, 2});
             sums += renderer.renderShares(camera, settings, {1, 2});
             EXPECT_LE(largestPixelDifference(resolveSums(sums, true), renderer.render(camera, settings)), 2e-5);
@@ -256,7 +254,6 @@ TEST_F(SharesTest, RectangleHoldsAllThatIsDrawn) {
   Renderer renderer(device(), scene.volume, scene.classification, {});
   const FixedSums sums = renderer.renderShares(scene.camera, scene.settings, {});
   EXPECT_LT(sums.pixelCount(), std::size_t(128 * 96 / 4));
-  scene.settings.cullThreshold = 0.0f;
   EXPECT_LE(largestPixelDifference(resolveSums(sums, true), renderer.render(scene.camera, scene.settings)), 2e-5);
 }
 
@@ -281,7 +278,8 @@ TEST_F(SharesTest, OpaqueAndEmptyVolumesResolveAsTheyAre) {
   const Camera camera = framingCamera(opaque, 35.0, 25.0, 1.0, {});
   Renderer ofOpaque(device(), opaque, {}, {}), ofEmpty(device(), empty, {}, {});
   for (const Draw draw : {Draw::Splats, Draw::Gather}) {
-    const FrameSettings settings{.size = {32, 32}, .draw = draw, .cullThreshold = 0.0f};
+    FrameSettings settings{.size = {32, 32}, .method = GatherSettings{.endTransmittance = 0.0f}};
+    if (draw == Draw::Splats) settings.method = SplatSettings{};
     const Image image = resolveSums(ofOpaque.renderShares(camera, settings, {}), true);
     EXPECT_NEAR(image.pixels[32 * 16 + 16].a, 1.0f, 2e-6f);  // the stencil knows no less transmittance than 1e-6
     EXPECT_LE(largestPixelDifference(image, ofOpaque.render(camera, settings)), draw == Draw::Splats ? 1e-4 : 5e-4);

@@ -18,7 +18,7 @@ class SortedSplatsTest : public DeviceTest {
  protected:
   static void expectSameImage(const Volume& volume, const Camera& camera, glm::ivec2 size) {
     const Classification classification = coloured(volume);
-    const FrameSettings settings{.size = size, .composite = Composite::Sorted, .depth = true};
+    const FrameSettings settings{.size = size, .method = SplatSettings{.composite = Composite::Sorted}, .depth = true};
     Renderer renderer(device(), volume, classification, {});
     const Image image = renderer.render(camera, settings);
     const Image expected =
@@ -79,8 +79,8 @@ TEST_F(SortedSplatsTest, EmptyVolumeIsBackground) {
   const Volume v = makeVolume(kSize, cubeTransform(kSize), [](int, int, int) { return 0.0; });
   Renderer renderer(device(), v, {}, {});
   for (const bool depth : {false, true}) {
-    const Image image =
-        renderer.render(framingCamera(v, 35.0, 25.0, 1.0, {}), {.size = {32, 32}, .composite = Composite::Sorted, .depth = depth});
+    const Image image = renderer.render(framingCamera(v, 35.0, 25.0, 1.0, {}),
+                                        {.size = {32, 32}, .method = SplatSettings{.composite = Composite::Sorted}, .depth = depth});
     for (const glm::vec4& pixel : image.pixels) ASSERT_EQ(pixel, glm::vec4(0.0f));
     for (float distance : image.depth) ASSERT_TRUE(std::isinf(distance));
   }
@@ -91,15 +91,15 @@ TEST_F(SortedSplatsTest, SameRenderTwiceIsBitIdentical) {
   const glm::ivec3 dimensions(40, 50, 45);
   const Volume v = randomVolume(dimensions, cubeTransform(dimensions), 0.7, 30.0);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
-  const FrameSettings settings{.size = {150, 150}, .composite = Composite::Sorted};
+  const FrameSettings settings{.size = {150, 150}, .method = SplatSettings{.composite = Composite::Sorted}};
   Renderer first(device(), v, {}, {}), second(device(), v, {}, {});
   const Image a = first.render(camera, settings), b = second.render(camera, settings);
-  const Image sums = first.render(camera, {.size = {150, 150}});
+  const Image sums = first.render(camera, {.size = {150, 150}, .method = SplatSettings{}});
   const Image c = first.render(camera, settings);
   const std::size_t bytes = a.pixels.size() * sizeof(glm::vec4);
   EXPECT_EQ(std::memcmp(a.pixels.data(), b.pixels.data(), bytes), 0);
   EXPECT_EQ(std::memcmp(a.pixels.data(), c.pixels.data(), bytes), 0);
-  EXPECT_EQ(sums.pixels, second.render(camera, {.size = {150, 150}}).pixels);
+  EXPECT_EQ(sums.pixels, second.render(camera, {.size = {150, 150}, .method = SplatSettings{}}).pixels);
   EXPECT_LT(psnr(sums, a), 60.0);
 }
 

@@ -39,7 +39,7 @@ class SplatTest : public DeviceTest {
       worstColor = std::max({worstColor, difference.x, difference.y, difference.z});
       worstAlpha = std::max(worstAlpha, difference.w);
     }
-    const bool normalised = settings.composite == Composite::Normalised;
+    const bool normalised = settings.isNormalised();
     EXPECT_LE(worstColor, 5e-3);
     EXPECT_LE(worstAlpha, normalised ? 1e-4 : 5e-3);
     EXPECT_LE(worstRelativeDepth(image, expected), 2e-3);

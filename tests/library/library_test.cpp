@@ -224,7 +224,7 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   expectError(Usage, R"(the camera stands at its look-at point; change "camera-position" or "look-at")",
               render(R"({"camera-position": [1, 2, 3], "look-at": [1, 2, 3]})"), {"camera-position", "look-at"});
   expectError(Usage, R"(or use "draw": "splats")", render(R"({"draw": "gather", "attenuation": "bilinear"})"),
-              {"draw", "attenuation", "composite"});
+              {"draw", "paper", "attenuation", "composite"});
   expectError(Input, R"("up" takes X,Y,Z)", render(R"({"up": true})"), {"up"});
   expectError(Usage, R"("fov" takes)", render(R"({"fov": "wide"})"), {"fov"});
   expectError(Device, R"(no device matches "device": "none such")", render(R"({"device": "none such"})"), {"device"});

@@ -62,7 +62,7 @@ TEST(Emission, TheSplatsOfASlabAreTheClosedForm) {
     const auto voxels = referenceVisibleVoxels(extinction, emission);
     ASSERT_EQ(voxels.size(), volume.voxelCount());
     for (const Composite composite : {Composite::Normalised, Composite::Additive}) {
-      const FrameSettings settings{.size = {1, 1}, .composite = composite};
+      const FrameSettings settings{.size = {1, 1}, .method = SplatSettings{.composite = composite}};
       const auto sums = referenceSplatSums(
           volume, classification,
           {.extinction = extinction, .table = table, .tableSettings = {}, .emission = emission}, kCamera,

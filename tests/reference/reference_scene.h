@@ -47,7 +47,7 @@ inline Classification physical(double densityScale, glm::vec3 albedo = glm::vec3
 inline FrameSettings frameOf(glm::ivec2 size, Composite composite = Composite::Normalised) {
   FrameSettings settings;
   settings.size = size;
-  settings.composite = composite;
+  settings.method = SplatSettings{.composite = composite};
   return settings;
 }
 

@@ -30,7 +30,7 @@ double footprint(double r) {
 /// A single pixel, far smaller than a voxel, whose centre looks along -z through (x, y).
 SplatSums sumsAt(const Scene& scene, double x, double y, bool gradient = true) {
   FrameSettings settings = frameOf({1, 1}, Composite::Additive);
-  settings.gradient = gradient;
+  settings.splats().gradient = gradient;
   return scene.sums(lookingDown(x, y, 1e-3), settings).at(0);
 }
 
@@ -362,7 +362,7 @@ TEST(ReferenceResolve, NormalisedKeepsTheColourMixAndTakesAlphaFromTheDepth) {
   EXPECT_EQ(image.depth[0], 7.0f);
   EXPECT_EQ(image.depth[1], std::numeric_limits<float>::infinity());
 
-  settings.composite = Composite::Additive;
+  settings.splats().composite = Composite::Additive;
   settings.depth = false;
   const Image additive = referenceResolve(sums, settings);
   EXPECT_LT(glm::length(additive.pixels[0] - glm::vec4(0.2f, 0.4f, 0.0f, 0.8f)), 1e-6f);
@@ -377,7 +377,7 @@ TEST(ReferenceSplats, LooksTheTableUpInTheDirectionOfTheEye) {
     camera.position = 9.0 * toEye;
     camera.lookAt = glm::dvec3(0.0);
     FrameSettings settings = frameOf({1, 1}, Composite::Additive);
-    settings.attenuation = lookup;
+    settings.splats().attenuation = lookup;
     return scene.sums(camera, settings).at(0).energy;
   };
   for (int d = 0; d < directionCount(DirectionSet::Directions26); ++d) {

@@ -31,7 +31,7 @@ class Popping : public StageOutputs {
   std::vector<glm::dvec3> emission() override { return whole_->emission(); }
   TableBytes table() override { return whole_->table(); }
   std::vector<std::uint32_t> visibleVoxels() override { return whole_->visibleVoxels(); }
-  RayCodes rays(const Camera& camera) override { return whole_->rays(camera); }
+  RayCodes rays(const RaySource& source) override { return whole_->rays(source); }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     return whole_->sums(camera, settings);
   }

@@ -1,7 +1,5 @@
 #include "engine/validation/fly_through.h"
 
-#include <glm/gtc/matrix_transform.hpp>
-
 #include "engine/validation/fly_through_quality.h"
 #include "engine/volume/subject.h"
 #include "tests/splatting/framed_box.h"
@@ -48,29 +46,6 @@ TEST(EyeIsInside, UpToTheFacesOfTheBoxAndNeverOrthographic) {
   EXPECT_FALSE(inside({1.0, 1.0, -0.6}));
   camera.orthographic = true;
   EXPECT_FALSE(inside({1.0, 1.0, 1.0}));
-}
-
-TEST(RayShare, FallsFromTheBoxOnAndOnlyOfAuto) {
-  const glm::ivec3 dimensions(4, 2, 3);
-  const glm::dmat4 indexToWorld = glm::scale(glm::dmat4(1.0), glm::dvec3(2.0, 3.0, 1.0));  // edges 8, 6, 3
-  Camera camera;
-  const auto share = [&](glm::dvec3 eye, AttenuationLookup lookup = AttenuationLookup::Auto) {
-    camera.position = glm::dvec3(indexToWorld * glm::dvec4(eye, 1.0));
-    return rayShare(lookup, camera, dimensions, indexToWorld);
-  };
-  EXPECT_EQ(share({1.0, 1.0, 1.0}), 1.0);
-  EXPECT_EQ(share({3.5, 1.5, -0.5}), 1.0);
-  EXPECT_NEAR(share({3.5 + 1e-9, 1.0, 1.0}), 1.0, 1e-8);
-  EXPECT_NEAR(share({1.0, 1.0, -0.5 - 0.25 * kNearBox * 8.0}), 0.75, 1e-12);
-  EXPECT_NEAR(share({-0.5 - 0.3 * kNearBox * 4.0, 1.5 + 0.4 * kNearBox * 8.0 / 3.0, 1.0}), 0.5, 1e-12);
-  EXPECT_EQ(share({1.0, 1.0, -0.6 - kNearBox * 8.0}), 0.0);
-  for (const glm::dvec3 eye : {glm::dvec3(1.0), {4.0, 1.0, 1.0}, {100.0, 1.0, 1.0}}) {
-    EXPECT_EQ(share(eye, AttenuationLookup::Exact), 1.0);
-    EXPECT_EQ(share(eye, AttenuationLookup::Bilinear), 0.0);
-    EXPECT_EQ(share(eye, AttenuationLookup::Nearest), 0.0);
-  }
-  camera.orthographic = true;
-  EXPECT_EQ(share({1.0, 1.0, 1.0}), 0.0);
 }
 
 }  // namespace

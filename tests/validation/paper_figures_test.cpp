@@ -25,7 +25,7 @@ struct WrongStages : StageOutputs {
     return bytes;
   }
   std::vector<std::uint32_t> visibleVoxels() override { return right->visibleVoxels(); }
-  RayCodes rays(const Camera& camera) override { return right->rays(camera); }
+  RayCodes rays(const RaySource& source) override { return right->rays(source); }
   std::vector<SplatSums> sums(const Camera& camera, const FrameSettings& settings) override {
     std::vector<SplatSums> sums = right->sums(camera, settings);
     for (SplatSums& s : sums) s.depth *= 0.99f;
@@ -33,7 +33,7 @@ struct WrongStages : StageOutputs {
   }
   Image image(const Camera& camera, const FrameSettings& settings) override {
     FrameSettings changed = settings;
-    if (changed.composite == asked) changed.composite = drawn;
+    if (changed.splats().composite == asked) changed.splats().composite = drawn;
     return right->image(camera, changed);
   }
 };

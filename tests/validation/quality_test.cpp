@@ -24,7 +24,11 @@ std::vector<QualityMethod> madeUpMethods() {
            .frame = {},
            .order = ClassificationOrder::Post,
            .goals = {.mean = 40.0, .least = 31.0, .leastThin = 25.0, .notBelowSorted = true}},
-          {.name = "sorted", .table = {}, .frame = {.composite = Composite::Sorted}, .order = ClassificationOrder::Post, .goals = {}}};
+          {.name = "sorted",
+           .table = {},
+           .frame = {.method = SplatSettings{.composite = Composite::Sorted}},
+           .order = ClassificationOrder::Post,
+           .goals = {}}};
 }
 
 QualityFigures madeUpFigures() {
@@ -118,10 +122,9 @@ TEST(QualityFigures, AImageAgainstItselfAndAnother) {
 
 TEST(QualityMethods, TheFirstIsTheDefaultAndOneIsSorted) {
   const auto& methods = qualityMethods();
-  EXPECT_EQ(methods.front().frame.composite, FrameSettings{}.composite);
-  EXPECT_EQ(methods.front().frame.attenuation, FrameSettings{}.attenuation);
-  EXPECT_TRUE(methods.front().frame.gradient);
-  EXPECT_EQ(methods.at(sortedMethod(methods)).frame.composite, Composite::Sorted);
+  EXPECT_TRUE(methods.front().frame.gathers());
+  EXPECT_TRUE(methods.front().frame.splats().gradient);
+  EXPECT_TRUE(methods.at(sortedMethod(methods)).frame.isSorted());
 }
 
 TEST(QualityScenes, TransferFunctionsAreThoseOfTheFiles) {
@@ -157,7 +160,7 @@ struct OracleStages : StageOutputs {
   std::vector<glm::dvec3> emission() override { return {}; }
   TableBytes table() override { return {}; }
   std::vector<std::uint32_t> visibleVoxels() override { return {}; }
-  RayCodes rays(const Camera&) override { return {}; }
+  RayCodes rays(const RaySource&) override { return {}; }
   std::vector<SplatSums> sums(const Camera&, const FrameSettings&) override { return {}; }
   Image image(const Camera& camera, const FrameSettings& settings) override {
     Image image =
@@ -188,7 +191,7 @@ QualityScene tinyScene() {
 
 TEST(ImageQuality, ComparesEachMethodWithTheOracleInEachView) {
   const auto make = oracleStages([](Image& image, const FrameSettings& settings, int before) {
-    if (settings.composite == Composite::Sorted) brighten(image, before == 1 ? 0.1f : 0.01f);
+    if (settings.isSorted()) brighten(image, before == 1 ? 0.1f : 0.01f);
   });
   const auto [section, figures] =
       imageQuality(make, tinyScene(), madeUpMethods(), {.views = quickQualityViews(), .imageEdge = 12, .hasGoals = true});
@@ -206,7 +209,7 @@ TEST(ImageQuality, ComparesEachMethodWithTheOracleInEachView) {
 
 TEST(ImageQuality, NoticesAImageThatIsOff) {
   const auto make = oracleStages([](Image& image, const FrameSettings& settings, int before) {
-    if (settings.composite == Composite::Normalised && before == 2) brighten(image, 0.05f);
+    if (settings.isNormalised() && before == 2) brighten(image, 0.05f);
   });
   const ReportSection section =
       imageQuality(make, tinyScene(), madeUpMethods(), {.views = quickQualityViews(), .imageEdge = 12, .hasGoals = true}).section;

@@ -34,10 +34,9 @@ struct SteppedGather : GatherOutputs {
 
   GatherStages frame(const Camera& camera, const FrameSettings& wanted) override {
     FrameSettings settings = wanted;
-    settings.attenuation = AttenuationLookup::Exact;
     if (settings.lod > 0.0f && !built.hasBlocks()) buildBlocks(device, source, classification, built, times);
     FrameConstants constants = makeFrameConstants(device, built.volume, {}, camera, settings);
-    shader::GatherFrame rays = makeGatherFrame(built.volume, camera, settings, constants.detail, constants.hiddenTransmittance);
+    shader::GatherFrame rays = makeGatherFrame(built.volume, camera, settings, constants.detail, constants.endTransmittance);
     constants.detail.finest = rays.finest;
     const GatherVolume::Shading shading{.frame = constants,
                                         .table = nullptr,

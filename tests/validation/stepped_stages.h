@@ -42,9 +42,9 @@ struct SteppedStages : StageOutputs {
     for (const std::uint32_t voxel : listed) voxels.push_back(steps.volume.layout.unpaddedIndex(voxel));
     return voxels;
   }
-  RayCodes rays(const Camera& camera) override {
+  RayCodes rays(const RaySource& from) override {
     RaySweep sweep(device);
-    RayCodes codes = sweep.sweep(steps.volume, eyeSource(camera, source.indexToWorld));
+    RayCodes codes = sweep.sweep(steps.volume, from);
     if (alterRays) alterRays(codes);
     return codes;
   }

@@ -27,7 +27,7 @@ class DiagnosisTest : public DeviceTest {
     const glm::ivec2 place(x * image.size.x, y * image.size.y);
     return image.pixels[std::size_t(place.x) + std::size_t(image.size.x) * std::size_t(place.y)];
   }
-  Image diagnosis(const Diagnosis& shown, FrameSettings settings = {.size = {64, 64}}) {
+  Image diagnosis(const Diagnosis& shown, FrameSettings settings = {.size = {64, 64}, .method = SplatSettings{}}) {
     return diagnoser.make(shown, renderer, volume, {}, camera, settings);
   }
 
@@ -86,7 +86,7 @@ TEST_F(DiagnosisTest, TheTableOnTheVolumeIsBrightWhereItsDirectionComesOut) {
 
 /// All are left out by one that looks past them.
 TEST_F(DiagnosisTest, BlocksAreThoseOfTheCameraTheyWereChosenFor) {
-  const FrameSettings settings{.size = {64, 64}, .lod = 0.0f};
+  const FrameSettings settings{.size = {64, 64}, .method = SplatSettings{}, .lod = 0.0f};
   const Image own = diagnosis({.shown = Shown::Blocks}, settings);
   EXPECT_GT(pixelAt(own, 0.6, 0.5).r + pixelAt(own, 0.6, 0.5).g + pixelAt(own, 0.6, 0.5).b, 0.1f);
   EXPECT_EQ(pixelAt(own, 0.05, 0.5), glm::vec4(0.0f, 0.0f, 0.0f, 1.0f));

@@ -84,7 +84,7 @@ TEST_F(OpenedFile, APatternIsItsFirstFrame) {
 TEST_F(OpenedFile, ASceneBringsAllButTheSize) {
   made("smoke.vdb");
   openFile(state, made("scene.json", R"({"input": {"volume": "smoke.vdb"}, "output": {"float": true},
-      "camera": {"orbit": [10, 20], "size": [64, 64], "frames": 5}, "method": {"attenuation": "exact"}})"));
+      "camera": {"orbit": [10, 20], "size": [64, 64], "frames": 5}, "method": {"attenuation": "nearest"}})"));
   EXPECT_EQ(state.scene.input.volume, (folder / "smoke.vdb").string());
   EXPECT_EQ(state.scene.camera.orbit, glm::dvec2(10.0, 20.0));
   EXPECT_EQ(state.scene.camera.size, glm::ivec2(300, 200));

@@ -35,7 +35,7 @@ bool isInside(const CullRule& rule, glm::dvec3 position) {
 TEST(CullRule, PlanesBoundTheImage) {
   std::mt19937 generator(1);
   std::uniform_real_distribution<double> uniform(-0.5, 1.5);
-  const FrameSettings settings{.size = {80, 60}};
+  const FrameSettings settings{.size = {80, 60}, .method = SplatSettings{}};
   for (const bool orthographic : {false, true}) {
     const PixelRays rays = pixelRays(cameraOf(orthographic), settings.size, kTransform);
     const CullRule rule = cullRule(kDimensions, rays, settings);
@@ -58,7 +58,7 @@ TEST(CullRule, PlanesBoundTheImage) {
 
 TEST(CullRule, AVolumeInTheImageHasNothingOutside) {
   Camera camera = cameraOf(false);
-  const FrameSettings settings{.size = {80, 60}};
+  const FrameSettings settings{.size = {80, 60}, .method = SplatSettings{}};
   const auto ruleOf = [&] {
     return cullRule(kDimensions, pixelRays(camera, settings.size, kTransform), settings);
   };
@@ -71,7 +71,7 @@ TEST(CullRule, NothingIsHiddenFromInsideOrWithoutTheTable) {
   const auto depthOf = [](const Camera& camera, const FrameSettings& settings) {
     return cullRule(kDimensions, pixelRays(camera, settings.size, kTransform), settings).hiddenDepth;
   };
-  const FrameSettings settings{.size = {80, 60}};
+  const FrameSettings settings{.size = {80, 60}, .method = SplatSettings{.cullThreshold = 1.0f / 512.0f}};
   EXPECT_NEAR(depthOf(cameraOf(false), settings), std::log(512.0), 1e-6);
   EXPECT_NEAR(depthOf(cameraOf(true), settings), std::log(512.0), 1e-6);
   Camera inside = cameraOf(false);
@@ -79,10 +79,11 @@ TEST(CullRule, NothingIsHiddenFromInsideOrWithoutTheTable) {
   EXPECT_EQ(depthOf(inside, settings), 0.0);
   inside.position = glm::dvec3(kTransform * glm::dvec4(15.0, 10.0, 39.7, 1.0));
   EXPECT_GT(depthOf(inside, settings), 0.0);
-  for (const auto& without : {FrameSettings{.size = {80, 60}, .culling = false},
-                              FrameSettings{.size = {80, 60}, .cullThreshold = 0.0f},
-                              FrameSettings{.size = {80, 60}, .composite = Composite::Sorted},
-                              FrameSettings{.size = {80, 60}, .attenuation = AttenuationLookup::Exact}})
+  for (const auto& without :
+       {FrameSettings{.size = {80, 60}, .method = SplatSettings{.culling = false, .cullThreshold = 0.1f}},
+        FrameSettings{.size = {80, 60}, .method = SplatSettings{.cullThreshold = 0.0f}},
+        FrameSettings{.size = {80, 60}, .method = SplatSettings{.composite = Composite::Sorted, .cullThreshold = 0.1f}},
+        FrameSettings{.size = {80, 60}}})
     EXPECT_EQ(depthOf(cameraOf(false), without), 0.0);
 }
 

@@ -1,0 +1,68 @@
+#include "engine/device_scene.h"
+
+#include <algorithm>
+#include <utility>
+
+#include "engine/attenuation/table_levels.h"
+
+namespace freevoxels {
+
+DeviceScene::DeviceScene(const Device& onDevice, const Volume& volume, const Classification& classes, const TableSettings& settings,
+                         std::vector<StageTime> times, const Progress& progress)
+    : device(onDevice),
+      hostVolume(volume),
+      classification(classes),
+      tableSettings(settings),
+      buildTimes(std::move(times)),
+      built(buildVolume(device, hostVolume, classification, buildTimes, progress)) {}
+
+VolumeMemory DeviceScene::memory() const {
+  const DeviceVolume& volume = built.volume;
+  const std::vector<std::uint64_t> nothing(volume.hierarchy.levels.size(), 0);
+  return volumeMemory(volume.hierarchy, built.hasBlocks() ? volume.stored : nothing, tableSettings.directions, storedKinds(volume),
+                      sweepStyle(device));
+}
+
+const BuiltVolume& DeviceScene::builtWithBlocks(const Progress& progress) {
+  if (!built.hasBlocks()) buildBlocks(device, hostVolume, classification, built, frameTimes, progress);
+  return built;
+}
+
+const AttenuationTable& DeviceScene::table(bool withLevels, const Progress& progress) {
+  if (!table_) {
+    builtWithBlocks(progress);
+    checkTableFits(device, built.volume, tableSettings.directions);
+    AttenuationTable made = makeTable(device, built.volume, tableSettings);
+    AttenuationSweep sweep(device, tableSettings);
+    Commands commands(device);
+    sweep.record(commands, built.volume, made);
+    submit(commands, progress);
+    table_ = std::move(made);
+  }
+  if (withLevels && largestDepths_.empty()) {
+    TableLevels pass(device, tableSettings);
+    Commands commands(device);
+    pass.record(commands, built.volume, built.lists.steps, *table_);
+    submit(commands, progress);
+    largestDepths_ = downloadLargestDepths(device, *table_);
+  }
+  return *table_;
+}
+
+FrameSettings DeviceScene::resolved(const FrameSettings& settings) const {
+  FrameSettings result = settings;
+  if (settings.lighting) result.lighting->attenuation = planLightAttenuation(device, built.volume, memory(), settings);
+  return result;
+}
+
+shader::FrameLighting DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, const Progress& progress) {
+  if (!lights_) lights_.emplace(device);
+  return lights_->prepare(built.volume, tableSettings, settings, scalars, frameTimes, progress);
+}
+
+void DeviceScene::submit(Commands& commands, const Progress& progress) {
+  commands.submitAndWait(progress);
+  addTimes(frameTimes, commands.times());
+}
+
+}  // namespace freevoxels

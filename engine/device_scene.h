@@ -1,0 +1,59 @@
+#pragma once
+// What all drawings of a volume that is on the device as a whole share. Only engine/renderer*.cpp and the drawings include it.
+
+#include <memory>
+#include <optional>
+#include <vector>
+
+#include "engine/attenuation/attenuation_table.h"
+#include "engine/core/stages.h"
+#include "engine/lighting/light_pass.h"
+#include "engine/memory_planner.h"
+#include "engine/octree/device_volume.h"
+#include "engine/octree/volume_builder.h"
+#include "engine/scene/render_settings.h"
+#include "engine/splatting/frame_targets.h"
+#include "engine/volume/classification.h"
+
+namespace freevoxels {
+
+/// A volume on the device, with what frames need of it and its lights: each is made for the first frame that needs it and kept. Refers to
+/// the device and the volume, which must outlive it.
+class DeviceScene {
+ public:
+  /// Uploads the volume. `times` are those of what was made before.
+  DeviceScene(const Device& device, const Volume& hostVolume, const Classification& classification, const TableSettings& tableSettings,
+              std::vector<StageTime> times, const Progress& progress);
+
+  const Device& device;
+  const Volume& hostVolume;
+  const Classification classification;
+  const TableSettings tableSettings;
+  std::vector<StageTime> buildTimes;  ///< of what is kept for all frames
+  std::vector<StageTime> frameTimes;  ///< of the last frame, with what was made for it
+  BuiltVolume built;
+  TargetPool targetPool;
+
+  VolumeMemory memory() const;
+  /// With the blocks.
+  const BuiltVolume& builtWithBlocks(const Progress& progress = {});
+  /// The attenuation table, with the levels above the voxels if a frame may look them up.
+  const AttenuationTable& table(bool withLevels, const Progress& progress = {});
+  /// The largest depths of the table, by direction; empty without its levels.
+  const std::vector<double>& largestDepths() const { return largestDepths_; }
+  /// The settings with LightAttenuation::Auto resolved.
+  FrameSettings resolved(const FrameSettings& settings) const;
+  /// Prepares the lights of resolved settings: LightPass::prepare.
+  shader::FrameLighting prepareLights(const FrameSettings& settings, bool scalars, const Progress& progress);
+  /// Of the last frame that was lit.
+  const LightPass& lights() const { return *lights_; }
+  /// Submits the commands, waits for them and adds their times to those of the frame.
+  void submit(Commands& commands, const Progress& progress = {});
+
+ private:
+  std::optional<AttenuationTable> table_;
+  std::vector<double> largestDepths_;
+  std::optional<LightPass> lights_;
+};
+
+}  // namespace freevoxels

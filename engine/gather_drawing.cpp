@@ -1,0 +1,79 @@
+// The order of the passes of a gathered frame. What is in brackets runs only if the frame needs it and it is not kept from an earlier one;
+// what is before a bar is submitted on its own.
+//   [blocks and octree] | [attenuation sweeps, table levels] | [light rays] | [shaded blocks, light depths, gradients, quads] |
+//   gather, stencil, resampling and resolve
+
+#include "engine/gather_drawing.h"
+
+#include "engine/gathering/gather_rows.h"
+
+namespace freevoxels {
+
+void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const Progress& progress) {
+  try {
+    if (!volume_) volume_.emplace(scene_.device, scene_.hostVolume, scene_.classification, scene_.built, scene_.frameTimes);
+    volume_->prepare(shading, scene_.frameTimes);
+    GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0);
+    Commands commands(scene_.device);
+    volume_->record(commands, shading);
+    if (!commands.empty()) scene_.submit(commands, progress);
+  } catch (...) {
+    volume_.reset();
+    throw;
+  }
+}
+
+GatherDrawing::Frame GatherDrawing::prepare(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
+  scene_.frameTimes.clear();
+  Frame frame{.settings = scene_.resolved(wanted), .constants = {}, .lattice = {}};
+  const FrameSettings& settings = frame.settings;
+  const DeviceVolume& onDevice = scene_.built.volume;
+  FrameConstants& constants = frame.constants;
+  constants = makeFrameConstants(scene_.device, onDevice, scene_.tableSettings, camera, settings);
+  const Lighting* const lighting = settings.lighting ? &*settings.lighting : nullptr;
+  const bool lightsSamples = GatherVolume::lightsSamples(lighting);
+  const bool shadesVoxels = lighting != nullptr && !lightsSamples;
+  if ((shadesVoxels || constants.detail.coarsest > 0) && !scene_.built.hasBlocks()) {
+    scene_.builtWithBlocks(progress);
+    constants = makeFrameConstants(scene_.device, onDevice, scene_.tableSettings, camera, settings);
+  }
+  frame.lattice = makeGatherFrame(onDevice, camera, settings, constants.detail, constants.endTransmittance);
+  constants.detail.finest = frame.lattice.finest;
+  const bool readsTable = constants.lightsReadTable && !lightsSamples;
+  const AttenuationTable* const table = readsTable ? &scene_.table(constants.detail.coarsest > 0, progress) : nullptr;
+  if (lighting != nullptr)
+    constants.setup.lighting = scene_.prepareLights(settings, onDevice.scalarBricks.has_value() && lightsSamples, progress);
+  prepareVolume({.frame = constants,
+                 .table = table,
+                 .lighting = lighting,
+                 .lights = lighting != nullptr ? &scene_.lights() : nullptr,
+                 .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
+                 .keptQuadBytes = planKeptQuadBytes(scene_.device)},
+                progress);
+  if (!pass_) pass_.emplace(scene_.device);
+  volume_->describe(frame.lattice);
+  return frame;
+}
+
+std::shared_ptr<const FrameTargets> GatherDrawing::record(Commands& commands, const Frame& frame) {
+  std::shared_ptr<const FrameTargets> targets = scene_.targetPool.take(scene_.device, frame.settings, TargetKind::Image);
+  pass_->record(commands, *volume_, frame.lattice, *targets);
+  return targets;
+}
+
+FixedSums GatherDrawing::shares(const Frame& frame, const SharePart& part, const Progress& progress) {
+  FixedSums sums = sumsOfSamples(frame.lattice, volume_->hasScalars(), sumsLayout(scene_.built.volume, frame.constants, frame.settings));
+  const glm::ivec2 rows = rowsOfPart(frame.lattice, part);
+  if (rows.x == rows.y) return sums;
+  const shader::GatherFrame own = frameOfRows(frame.lattice, rows);
+  Commands commands(scene_.device);
+  pass_->begin(commands, own);
+  commands.beginPass("gather");
+  pass_->recordSamples(commands, *volume_, own);
+  scene_.submit(commands, progress);
+  const StageTimer timer(scene_.frameTimes, "copy to host");
+  addSamples(sums, pass_->downloadGathered(), rows);
+  return sums;
+}
+
+}  // namespace freevoxels
