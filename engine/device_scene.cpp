@@ -1,6 +1,5 @@
 #include "engine/device_scene.h"
 
-#include <algorithm>
 #include <utility>
 
 #include "engine/attenuation/table_levels.h"
@@ -47,12 +46,6 @@ const AttenuationTable& DeviceScene::table(bool withLevels, const Progress& prog
     largestDepths_ = downloadLargestDepths(device, *table_);
   }
   return *table_;
-}
-
-FrameSettings DeviceScene::resolved(const FrameSettings& settings) const {
-  FrameSettings result = settings;
-  if (settings.lighting) result.lighting->attenuation = planLightAttenuation(device, built.volume, memory(), settings);
-  return result;
 }
 
 shader::FrameLighting DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, const Progress& progress) {

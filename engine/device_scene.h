@@ -1,7 +1,6 @@
 #pragma once
 // What all drawings of a volume that is on the device as a whole share. Only engine/renderer*.cpp and the drawings include it.
 
-#include <memory>
 #include <optional>
 #include <vector>
 
@@ -24,6 +23,8 @@ class DeviceScene {
   /// Uploads the volume. `times` are those of what was made before.
   DeviceScene(const Device& device, const Volume& hostVolume, const Classification& classification, const TableSettings& tableSettings,
               std::vector<StageTime> times, const Progress& progress);
+  DeviceScene(const DeviceScene&) = delete;  // drawings refer to it
+  DeviceScene& operator=(const DeviceScene&) = delete;
 
   const Device& device;
   const Volume& hostVolume;
@@ -41,9 +42,7 @@ class DeviceScene {
   const AttenuationTable& table(bool withLevels, const Progress& progress = {});
   /// The largest depths of the table, by direction; empty without its levels.
   const std::vector<double>& largestDepths() const { return largestDepths_; }
-  /// The settings with LightAttenuation::Auto resolved.
-  FrameSettings resolved(const FrameSettings& settings) const;
-  /// Prepares the lights of resolved settings: LightPass::prepare.
+  /// Prepares the lights of settings whose attenuation is not Auto: LightPass::prepare.
   shader::FrameLighting prepareLights(const FrameSettings& settings, bool scalars, const Progress& progress);
   /// Of the last frame that was lit.
   const LightPass& lights() const { return *lights_; }

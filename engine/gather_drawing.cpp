@@ -5,6 +5,7 @@
 
 #include "engine/gather_drawing.h"
 
+#include "engine/core/error.h"
 #include "engine/gathering/gather_rows.h"
 
 namespace freevoxels {
@@ -24,18 +25,22 @@ void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const Pr
 }
 
 GatherDrawing::Frame GatherDrawing::prepare(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
+  FV_CHECK_EQ(wanted.gathers(), true);
+  checkCamera(camera);
   scene_.frameTimes.clear();
-  Frame frame{.settings = scene_.resolved(wanted), .constants = {}, .lattice = {}};
-  const FrameSettings& settings = frame.settings;
-  const DeviceVolume& onDevice = scene_.built.volume;
-  FrameConstants& constants = frame.constants;
-  constants = makeFrameConstants(scene_.device, onDevice, scene_.tableSettings, camera, settings);
+  Frame frame{.settings = wanted, .constants = {}, .lattice = {}};
+  FrameSettings& settings = frame.settings;
+  // Whatever memory there is: a frame that lacks it for exact shadows is drawn cube by cube.
+  if (settings.lighting) settings.lighting->attenuation = lightAttenuationFor(wanted);
   const Lighting* const lighting = settings.lighting ? &*settings.lighting : nullptr;
   const bool lightsSamples = GatherVolume::lightsSamples(lighting);
   const bool shadesVoxels = lighting != nullptr && !lightsSamples;
+  const DeviceVolume& onDevice = scene_.built.volume;
+  const auto constantsNow = [&] { return makeFrameConstants(scene_.device, onDevice, scene_.tableSettings, camera, settings); };
+  FrameConstants& constants = frame.constants = constantsNow();
   if ((shadesVoxels || constants.detail.coarsest > 0) && !scene_.built.hasBlocks()) {
     scene_.builtWithBlocks(progress);
-    constants = makeFrameConstants(scene_.device, onDevice, scene_.tableSettings, camera, settings);
+    constants = constantsNow();  // with the blocks' addresses
   }
   frame.lattice = makeGatherFrame(onDevice, camera, settings, constants.detail, constants.endTransmittance);
   constants.detail.finest = frame.lattice.finest;

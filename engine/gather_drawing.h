@@ -8,8 +8,8 @@
 #include "engine/gathering/gather_pass.h"
 #include "engine/image/fixed_sums.h"
 #include "engine/scene/camera.h"
+#include "engine/splatting/frame_constants.h"
 #include "engine/splatting/shares.h"
-#include "engine/splatting/splat_pass.h"
 
 namespace freevoxels {
 
@@ -17,6 +17,8 @@ class GatherDrawing {
  public:
   /// Frames are of `scene`, which must outlive the drawing. What it keeps of the volume is made for the first of them.
   explicit GatherDrawing(DeviceScene& scene) : scene_(scene) {}
+  GatherDrawing(const GatherDrawing&) = delete;
+  GatherDrawing& operator=(const GatherDrawing&) = delete;
 
   struct Frame {
     FrameSettings settings;

@@ -26,6 +26,31 @@ std::uint64_t frameBytes(const FrameSettings& settings) {
   return 2 * targetBytes(settings);
 }
 
+/// Bytes of device memory that frames of splats with the table take at least, images included. Counts the occupied voxels on the host, and
+/// may be up to a quarter too large.
+std::uint64_t leastMemory(const Device& device, const Volume& volume, const Classification& classification, DirectionSet directions,
+                          const FrameSettings& settings) {
+  std::vector<bool> occupied(volume.voxelCount());
+  const VoxelClassifier classifier(classification, volume);
+  constexpr int n = ScalarBricks::kEdge;
+  for (std::size_t brick = 0; brick < volume.scalars.bricks().size(); ++brick) {
+    const glm::ivec3 first = volume.scalars.firstVoxel(brick);
+    const glm::ivec3 begin = glm::max(first, 0), end = glm::min(first + n, volume.dimensions);
+    for (glm::ivec3 v = begin; v.z < end.z; ++v.z)
+      for (v.y = begin.y; v.y < end.y; ++v.y)
+        for (v.x = begin.x; v.x < end.x; ++v.x) {
+          const ClassifiedVoxel voxel = classifier.at(v);
+          occupied[volume.at(v.x, v.y, v.z)] = voxel.extinction > 0.0 || voxel.emission != glm::dvec3(0.0);
+        }
+  }
+  const HierarchyLayout hierarchy(volume.dimensions);
+  const std::vector<std::uint64_t> stored = countOccupiedBlocks(volume.dimensions, std::move(occupied));
+  const StoredKinds kinds{.colors = classification.transferFunction || volume.albedo, .emission = classification.emission.has_value()};
+  const std::uint64_t bytes = volumeMemory(hierarchy, stored, directions, kinds, sweepStyle(device)).peak() + frameBytes(settings);
+  // A margin for what volumeMemory does not count: an eighth for lists that are rounded up, 2 MiB for constants and counters.
+  return bytes + bytes / 8 + (std::uint64_t(2) << 20);
+}
+
 }  // namespace
 
 StoredKinds storedKinds(const DeviceVolume& volume) {
@@ -81,29 +106,6 @@ std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions,
     }
   }
   return brickVoxels * quadBytes + rays;
-}
-
-std::uint64_t leastMemory(const Device& device, const Volume& volume, const Classification& classification, DirectionSet directions,
-                          const FrameSettings& settings) {
-  std::vector<bool> occupied(volume.voxelCount());
-  const VoxelClassifier classifier(classification, volume);
-  constexpr int n = ScalarBricks::kEdge;
-  for (std::size_t brick = 0; brick < volume.scalars.bricks().size(); ++brick) {
-    const glm::ivec3 first = volume.scalars.firstVoxel(brick);
-    const glm::ivec3 begin = glm::max(first, 0), end = glm::min(first + n, volume.dimensions);
-    for (glm::ivec3 v = begin; v.z < end.z; ++v.z)
-      for (v.y = begin.y; v.y < end.y; ++v.y)
-        for (v.x = begin.x; v.x < end.x; ++v.x) {
-          const ClassifiedVoxel voxel = classifier.at(v);
-          occupied[volume.at(v.x, v.y, v.z)] = voxel.extinction > 0.0 || voxel.emission != glm::dvec3(0.0);
-        }
-  }
-  const HierarchyLayout hierarchy(volume.dimensions);
-  const std::vector<std::uint64_t> stored = countOccupiedBlocks(volume.dimensions, std::move(occupied));
-  const StoredKinds kinds{.colors = classification.transferFunction || volume.albedo, .emission = classification.emission.has_value()};
-  const std::uint64_t bytes = volumeMemory(hierarchy, stored, directions, kinds, sweepStyle(device)).peak() + frameBytes(settings);
-  // A margin for what volumeMemory does not count: an eighth for lists that are rounded up, 2 MiB for constants and counters.
-  return bytes + bytes / 8 + (std::uint64_t(2) << 20);
 }
 
 Error withWholeNeed(const Error& error, const Device& device, const Volume& volume, const Classification& classification,

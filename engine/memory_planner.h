@@ -24,7 +24,7 @@ StoredKinds storedKinds(const DeviceVolume& volume);
 struct VolumeMemory {
   std::uint64_t occupancy = 0;   ///< two bits for every voxel and block of the box
   std::uint64_t extinction = 0;  ///< of occupied blocks, as are all that follow
-  std::uint64_t table = 0;       ///< attenuation table, once a frame has read it
+  std::uint64_t table = 0;       ///< attenuation table, which only frames make that read it
   std::uint64_t colors = 0;      ///< only with a transfer function or a grid of albedos
   std::uint64_t emission = 0;    ///< only with temperatures
   std::uint64_t lists = 0;       ///< lists of occupied blocks and of the blocks that a frame draws
@@ -48,18 +48,13 @@ VolumeMemory volumeMemory(const HierarchyLayout& hierarchy, std::span<const std:
 void checkSplatsFit(const Device& device, const DeviceVolume& volume);
 void checkTableFits(const Device& device, const DeviceVolume& volume, DirectionSet directions);
 
-/// Bytes of device memory that frames of a volume take at least, images included: those of splats with the table. Counts the occupied
-/// voxels on the host, and may be up to a quarter too large.
-std::uint64_t leastMemory(const Device& device, const Volume& volume, const Classification& classification, DirectionSet directions,
-                          const FrameSettings& settings);
-
 /// Bytes of device memory that the gather of voxels takes at least. `brickVoxels` are the voxels of all bricks that are not empty;
 /// `lighting` is null without lights; `emits` says whether voxels emit light.
 std::uint64_t leastGatherBytes(std::uint64_t brickVoxels, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting* lighting,
                                bool emits);
 
 /// To be thrown instead of `error`, which a volume or a frame failed with: where the device's memory is limited and is less than
-/// leastMemory, a sentence with that, so that a limit has to be raised once only; otherwise `error`.
+/// frames of splats take at least, a sentence with that, so that a limit has to be raised once only; otherwise `error`.
 Error withWholeNeed(const Error& error, const Device& device, const Volume& volume, const Classification& classification,
                     DirectionSet directions, const FrameSettings& settings);
 

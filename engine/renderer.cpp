@@ -128,7 +128,6 @@ auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& prog
     CubeDrawing alone(device_, source_, classification_, table_);
     return drawCubes(alone, settings);  // which says what the frame needs
   }
-  if (!whyNotCubes && settings.lighting) settings.lighting->attenuation = lightAttenuationFor(settings);
   drewInCubes_ = inCubes_ && !whyNotCubes;
   if (!drewInCubes_) {
     if (isTooLarge_ && !source_->isInMemory()) failTooLarge(device_, source_->outline(), *whyNotCubes);
@@ -151,7 +150,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
     commands.beginPass("read back");
     state.colorReadback.record(device_, commands, targets->colorEnergy);
     if (settings.depth) state.distanceReadback.record(device_, commands, targets->distance);
-    state.scene.submit(commands, progress);
+    state.submit(commands, progress);
     const StageTimer timer(state.scene.frameTimes, "copy to host");
     return Image{.size = settings.size,
                  .pixels = state.colorReadback.read<glm::vec4>(),
@@ -169,7 +168,7 @@ std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camer
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
     std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, fitting, progress);
-    state.scene.submit(commands, progress);
+    state.submit(commands, progress);
     return targets;
   };
   const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) { return drawing.draw(camera, fitting, progress); };
@@ -220,7 +219,7 @@ std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
 }
 
 CutCounts Renderer::cutCounts() const {
-  return state_ && state_->drewSplats ? state_->splats.counts() : CutCounts();
+  return state_ ? state_->splats.counts() : CutCounts();
 }
 
 }  // namespace freevoxels

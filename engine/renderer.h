@@ -1,5 +1,5 @@
 #pragma once
-// Volume in, image out: the passes of engine/docs/method.md in their order.
+// Volume in, image out.
 
 #include <cstdint>
 #include <memory>
@@ -16,7 +16,7 @@
 #include "engine/scene/render_settings.h"
 #include "engine/splatting/frame_targets.h"
 #include "engine/splatting/shares.h"
-#include "engine/visibility/cut_pass.h"
+#include "engine/visibility/cut_counts.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume_source.h"
 #include "engine/vulkan/device.h"

@@ -17,17 +17,16 @@ RendererStages::RendererStages(const Renderer& renderer)
                                                                    Parameter("memory-limit")))) {}
 
 std::vector<SplatSums> RendererStages::renderSums(const Camera& camera, const FrameSettings& settings) const {
-  FV_CHECK_EQ(settings.isSorted(), false);
-  checkCamera(camera);
+  FV_CHECK_EQ(settings.gathers() || settings.isSorted(), false);
   checkFrameFits(state_.scene.device, settings);
   Commands commands(state_.scene.device);
   FrameSettings whole = settings;
   whole.splats().cullThreshold = 0.0f;
-  const SplatDrawing::Frame frame = state_.splats.prepare(commands, camera, whole, {});
+  const SplatDrawing::Frame frame = state_.splats.prepare(camera, whole, {});
   state_.splats.recordSums(commands, frame);
   commands.beginPass("read back");
   const SumsReadback sums(state_.scene.device, commands, *frame.targets);
-  state_.scene.submit(commands);
+  state_.submit(commands);
   return sums.read(frame.constants);
 }
 
@@ -52,12 +51,11 @@ std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const 
 
 GatherStages RendererStages::renderGatherStages(const Camera& camera, const FrameSettings& settings) const {
   FV_CHECK_EQ(settings.gathers(), true);
-  checkCamera(camera);
   checkFrameFits(state_.scene.device, settings);
   clearGather();
   Commands commands(state_.scene.device);
   const std::shared_ptr<const FrameTargets> targets = state_.record(commands, camera, settings, {});
-  state_.scene.submit(commands);
+  state_.submit(commands);
   GatherStages stages = downloadGatherStages(state_.scene.device, state_.scene.built, state_.gather.volume(), state_.gather.pass());
   stages.image = downloadImage(state_.scene.device, *targets);
   return stages;
@@ -83,8 +81,8 @@ RayCodes RendererStages::downloadRays(const RaySource& source) const {
 
 std::vector<Block> RendererStages::downloadDrawnBlocks() const {
   std::vector<Block> blocks;
-  if (!state_.drewSplats || state_.splats.lastDrawn() == nullptr) return blocks;
-  for (const std::uint32_t index : freevoxels::downloadBlockList(state_.scene.device, *state_.splats.lastDrawn()))
+  if (state_.splats.drawnBlocks() == nullptr) return blocks;
+  for (const std::uint32_t index : freevoxels::downloadBlockList(state_.scene.device, *state_.splats.drawnBlocks()))
     blocks.push_back(state_.scene.built.volume.hierarchy.blockAt(index));
   return blocks;
 }

@@ -12,22 +12,25 @@ struct Renderer::State {
   DeviceScene scene;
   GatherDrawing gather{scene};
   SplatDrawing splats{scene};
-  bool drewSplats = false;  ///< whether the last frame was of splats
   TargetReadback colorReadback, distanceReadback;
 
-  /// Records the image of a frame.
+  /// Records the image of a frame, which is complete after submit().
   std::shared_ptr<const FrameTargets> record(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                              const Progress& progress) {
-    drewSplats = !settings.gathers();
-    if (drewSplats) return splats.record(commands, splats.prepare(commands, camera, settings, progress));
-    return gather.record(commands, gather.prepare(camera, settings, progress));
+    splats.forget();
+    if (settings.gathers()) return gather.record(commands, gather.prepare(camera, settings, progress));
+    return splats.record(commands, splats.prepare(camera, settings, progress));
+  }
+  void submit(Commands& commands, const Progress& progress = {}) {
+    scene.submit(commands, progress);
+    splats.complete();
   }
   FixedSums shares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress) {
-    drewSplats = !settings.gathers();
-    if (!drewSplats) return gather.shares(gather.prepare(camera, settings, progress), part, progress);
-    Commands commands(scene.device);
-    SplatDrawing::Frame frame = splats.prepare(commands, camera, settings, progress);
-    return splats.shares(commands, std::move(frame), part, progress);
+    splats.forget();
+    if (settings.gathers()) return gather.shares(gather.prepare(camera, settings, progress), part, progress);
+    FixedSums sums = splats.shares(splats.prepare(camera, settings, progress), part, progress);
+    splats.complete();
+    return sums;
   }
 };
 

@@ -4,33 +4,43 @@
 
 #include "engine/splat_drawing.h"
 
-#include <utility>
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
+namespace {
+
+bool isCut(const FrameConstants& constants) {
+  return !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut();
+}
+
+}  // namespace
+
 void SplatDrawing::preparePasses(const FrameSettings& settings) {
-  if (!splats_ || !splats_->draws(settings)) {
+  if (!resolve_ || !splats_->draws(settings)) {
+    resolve_.reset();
     splats_.emplace(scene_.device, settings.depth, settings.isSorted());
     resolve_.emplace(scene_.device, settings.depth);
   }
   if (settings.isSorted() && !sort_) sort_.emplace(scene_.device, scene_.built.volume);
 }
 
-SplatDrawing::Frame SplatDrawing::prepare(Commands& commands, const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
+SplatDrawing::Frame SplatDrawing::prepare(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
+  FV_CHECK_EQ(wanted.gathers(), false);
+  checkCamera(camera);
+  forget();
   scene_.frameTimes.clear();
   const BuiltVolume& built = scene_.builtWithBlocks(progress);
   checkSplatsFit(scene_.device, built.volume);
-  Frame frame{.settings = scene_.resolved(wanted), .constants = {}, .targets = {}};
-  preparePasses(frame.settings);
+  Frame frame{.camera = camera, .settings = wanted, .constants = {}, .targets = {}};
+  FrameSettings& settings = frame.settings;
+  if (settings.lighting) settings.lighting->attenuation = planLightAttenuation(scene_.device, built.volume, scene_.memory(), wanted);
+  preparePasses(settings);
   FrameConstants& constants = frame.constants;
-  constants = makeFrameConstants(scene_.device, built.volume, scene_.tableSettings, camera, frame.settings);
+  constants = makeFrameConstants(scene_.device, built.volume, scene_.tableSettings, camera, settings);
   if (constants.readsTable()) frame.table = &scene_.table(constants.readsLevels(), progress);
-  frame.targets = scene_.targetPool.take(scene_.device, frame.settings, frame.settings.isSorted() ? TargetKind::Image : TargetKind::Sums);
-  if (frame.settings.isSorted()) {
-    sort_->record(commands, built.volume, built.visible, camera);
-    frame.order = &sort_->voxels();
-  }
-  if (frame.settings.lighting) constants.setup.lighting = scene_.prepareLights(frame.settings, false, progress);
+  frame.targets = scene_.targetPool.take(scene_.device, settings, settings.isSorted() ? TargetKind::Image : TargetKind::Sums);
+  if (settings.lighting) constants.setup.lighting = scene_.prepareLights(settings, false, progress);
   CullRule& cull = constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(scene_.tableSettings, scene_.largestDepths(), glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))
@@ -38,15 +48,17 @@ SplatDrawing::Frame SplatDrawing::prepare(Commands& commands, const Camera& came
   return frame;
 }
 
-/// The blocks to draw, without those that the table calls hidden.
-SplatPass::Inputs SplatDrawing::recordList(Commands& commands, const Frame& frame) {
+/// The blocks to draw, without those that the table calls hidden; of a sorted frame in the order of their distances.
+SplatPass::Inputs SplatDrawing::recordList(Commands& commands, const Frame& frame, const CutCandidates* candidates) {
   const FrameConstants& constants = frame.constants;
   const BuiltVolume& built = scene_.built;
-  lastWasCut_ = frame.isCut();
-  lastLevel_ = constants.detail.finest;
-  SplatPass::Inputs drawing{.volume = built.volume, .table = frame.table, .order = frame.order};
+  SplatPass::Inputs drawing{.volume = built.volume, .table = frame.table};
   if (constants.lit) drawing.lights = &scene_.lights().lights();
-  if (lastWasCut_) {
+  if (frame.settings.isSorted()) {
+    sort_->record(commands, built.volume, built.visible, frame.camera);
+    drawing.order = &sort_->voxels();
+  }
+  if (isCut(constants)) {
     if (!cut_) cut_.emplace(scene_.device, scene_.tableSettings.code);
     cut_->record(commands, {.volume = built.volume,
                             .voxels = built.visible,
@@ -55,13 +67,14 @@ SplatPass::Inputs SplatDrawing::recordList(Commands& commands, const Frame& fram
                             .setup = constants.setup,
                             .detail = constants.detail,
                             .cull = constants.cull,
-                            .candidates = frame.candidates});
-    lastDrawn_ = &cut_->blocks();
+                            .candidates = candidates});
+    recorded_ = Drawn{.list = &cut_->blocks(), .wholeLevel = {}};
   } else {
-    lastDrawn_ = &built.lists.of(lastLevel_, built.visible);
+    const int level = constants.detail.finest;
+    recorded_ = Drawn{.list = &built.lists.of(level, built.visible), .wholeLevel = level};
   }
-  drawing.visible = lastDrawn_;
-  drawing.chunkCount = lastDrawn_->chunkCount;
+  drawing.visible = recorded_->list;
+  drawing.chunkCount = drawing.visible->chunkCount;
   return drawing;
 }
 
@@ -75,19 +88,23 @@ std::shared_ptr<const FrameTargets> SplatDrawing::record(Commands& commands, con
   return frame.targets;
 }
 
-FixedSums SplatDrawing::shares(Commands& commands, Frame frame, const SharePart& part, const Progress& progress) {
+FixedSums SplatDrawing::shares(const Frame& frame, const SharePart& part, const Progress& progress) {
+  FV_CHECK_EQ(frame.constants.cull.hiddenDepth, 0.0);
   const BuiltVolume& built = scene_.built;
   if (!shares_ || shares_->hasDistance() != frame.settings.depth) shares_.emplace(scene_.device, built, frame.settings.depth);
-  if (frame.isCut()) {
+  const CutCandidates* candidates = nullptr;
+  if (isCut(frame.constants)) {
     const StageTimer timer(scene_.frameTimes, "choose blocks of shares");
-    frame.candidates = shares_->candidates(part);
+    candidates = shares_->candidates(part);
   }
-  const SplatPass::Inputs drawing = recordList(commands, frame);
+  Commands commands(scene_.device);
+  const SplatPass::Inputs drawing = recordList(commands, frame, candidates);
+  const std::optional<int> level = recorded_->wholeLevel;
   return shares_->draw(commands,
                        {.splats = *splats_,
                         .drawing = drawing,
-                        .mostBlocks = lastWasCut_ ? cut_->mostBlocks() : built.volume.stored[std::size_t(lastLevel_)],
-                        .wholeLevel = lastWasCut_ ? std::nullopt : std::optional(lastLevel_),
+                        .mostBlocks = level ? built.volume.stored[std::size_t(*level)] : cut_->mostBlocks(),
+                        .wholeLevel = level,
                         .frame = frame.constants,
                         .targets = *frame.targets,
                         .layout = sumsLayout(built.volume, frame.constants, frame.settings)},
@@ -95,10 +112,10 @@ FixedSums SplatDrawing::shares(Commands& commands, Frame frame, const SharePart&
 }
 
 CutCounts SplatDrawing::counts() const {
-  if (lastDrawn_ == nullptr) return {};
-  if (lastWasCut_) return cut_->counts();
-  CutCounts counts{.drawn = std::vector<std::uint64_t>(std::size_t(lastLevel_), 0)};
-  counts.drawn.push_back(downloadBlockCount(scene_.device, *lastDrawn_));
+  if (!drawn_) return {};
+  if (!drawn_->wholeLevel) return cut_->counts();
+  CutCounts counts{.drawn = std::vector<std::uint64_t>(std::size_t(*drawn_->wholeLevel), 0)};
+  counts.drawn.push_back(downloadBlockCount(scene_.device, *drawn_->list));
   counts.considered = counts.drawn.back();
   return counts;
 }

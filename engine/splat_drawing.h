@@ -19,32 +19,42 @@ class SplatDrawing {
  public:
   /// Frames are of `scene`, which must outlive the drawing.
   explicit SplatDrawing(DeviceScene& scene) : scene_(scene) {}
+  SplatDrawing(const SplatDrawing&) = delete;
+  SplatDrawing& operator=(const SplatDrawing&) = delete;
 
   struct Frame {
+    Camera camera;
     FrameSettings settings;
     FrameConstants constants;
     std::shared_ptr<const FrameTargets> targets;
-    const AttenuationTable* table = nullptr;    ///< where the frame reads it
-    const Buffer* order = nullptr;              ///< of the voxels, where they are sorted
-    const CutCandidates* candidates = nullptr;  ///< of a frame that draws some shares only
-    bool isCut() const { return !constants.detail.isOneLevel() || !constants.cull.leavesNothingOut(); }
+    const AttenuationTable* table = nullptr;  ///< where the frame reads it
   };
-  /// Makes all that a frame needs before its blocks are listed and drawn, and records its depth sort.
-  Frame prepare(Commands& commands, const Camera& camera, const FrameSettings& settings, const Progress& progress);
+  /// Makes all that a frame needs before its blocks are listed and drawn. What is kept for further frames is made by submissions of its
+  /// own, so that a frame that is abandoned leaves it complete.
+  Frame prepare(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   /// Records the sums, which are left in the frame's targets; for Sorted these are the image.
   void recordSums(Commands& commands, const Frame& frame);
   /// Records the image.
   std::shared_ptr<const FrameTargets> record(Commands& commands, const Frame& frame);
-  /// The sums of a part's shares. The frame must not leave out hidden blocks. Submits `commands` and waits for the device.
-  FixedSums shares(Commands& commands, Frame frame, const SharePart& part, const Progress& progress);
+  /// The sums of a part's shares. The frame must not leave out hidden blocks. Waits for the device.
+  FixedSums shares(const Frame& frame, const SharePart& part, const Progress& progress);
 
-  /// Of the last frame that was not sorted; nothing and null before the first.
+  /// To be called when a recorded frame is complete: the following functions are then of it, until another one is prepared or forget() is
+  /// called.
+  void complete() { drawn_ = recorded_; }
+  void forget() { recorded_ = drawn_ = std::nullopt; }
+  /// What became of the blocks; nothing without a frame. Reads back.
   CutCounts counts() const;
-  const BlockList* lastDrawn() const { return lastDrawn_; }
+  /// The blocks that were drawn; null without a frame.
+  const BlockList* drawnBlocks() const { return drawn_ ? drawn_->list : nullptr; }
 
  private:
+  struct Drawn {
+    const BlockList* list;
+    std::optional<int> wholeLevel;  ///< the level, if these are all blocks of a level; else they are the list of `cut_`
+  };
   void preparePasses(const FrameSettings& settings);
-  SplatPass::Inputs recordList(Commands& commands, const Frame& frame);
+  SplatPass::Inputs recordList(Commands& commands, const Frame& frame, const CutCandidates* candidates = nullptr);
 
   DeviceScene& scene_;
   std::optional<CutPass> cut_;
@@ -52,9 +62,7 @@ class SplatDrawing {
   std::optional<ResolvePass> resolve_;
   std::optional<DepthSort> sort_;
   std::optional<ShareDrawing> shares_;
-  const BlockList* lastDrawn_ = nullptr;
-  bool lastWasCut_ = false;  ///< whether lastDrawn_ is the list of `cut_`
-  int lastLevel_ = 0;        ///< otherwise the level of all drawn blocks
+  std::optional<Drawn> recorded_, drawn_;
 };
 
 }  // namespace freevoxels

@@ -2,13 +2,10 @@
 #ifndef CATMULL_ROM_GLSL
 #define CATMULL_ROM_GLSL
 
-// Weights of the samples at -1, 0, 1 and 2 for a position x in 0..1, and their derivatives.
+// Weights of the samples at -1, 0, 1 and 2 for a position x in 0..1.
 vec4 cubicWeights(float x) {
   return 0.5 * vec4(x * (-1.0 + x * (2.0 - x)), 2.0 + x * x * (-5.0 + 3.0 * x), x * (1.0 + x * (4.0 - 3.0 * x)),
                     x * x * (-1.0 + x));
-}
-vec4 cubicSlopes(float x) {
-  return 0.5 * vec4(-1.0 + x * (4.0 - 3.0 * x), x * (-10.0 + 9.0 * x), 1.0 + x * (8.0 - 9.0 * x), x * (-2.0 + 3.0 * x));
 }
 
 #endif

@@ -36,33 +36,24 @@ struct DepthToEye {
   vec3 gradient;  // per voxel, index space
 };
 
-// Combines the depth of a block's middle layer and its slopes beside `axis`. A layer dims the light by
-// `layerDepth`, and counts `countedDepth` in the stored depths.
-DepthToEye inFrontOf(Block block, vec3 direction, int axis, vec3 middle, float layerDepth, float countedDepth) {
+// `sigma` is the block's extinction.
+DepthToEye depthToEye(Block block, float sigma) {
   DepthToEye result = DepthToEye(0.0, vec3(0.0));
-  result.depth = depthInFront(block, direction, middle.x, countedDepth);
+  if (frame.lookup == kLookupNone) return result;
+  const vec3 direction = directionToEye(block.center);
+  const int axis = majorAxis(direction);
+  float unsaturated;
+  const float middle = tableDepth(block, unsaturated);
+  // A layer dims the light by `layerDepth`, and counts `countedDepth` in the stored depths.
+  const float unsaturatedSigma = unsaturated * sigma, layerDepth = unsaturatedSigma * layerLength(direction);
+  const float countedDepth = frame.pathLengthCorrection != 0 ? layerDepth : unsaturatedSigma * frame.voxelSize;
+  result.depth = depthInFront(block, direction, middle, countedDepth);
   if (frame.gradient == 0) return result;
-  result.gradient[(axis + 1) % 3] = middle.y;
-  result.gradient[(axis + 2) % 3] = middle.z;
+  result.gradient[(axis + 1) % 3] = tableSlope(block, (axis + 1) % 3);
+  result.gradient[(axis + 2) % 3] = tableSlope(block, (axis + 2) % 3);
   // Along the line of sight, the depth falls by that of one layer.
   result.gradient[axis] = -(layerDepth + dot(result.gradient, direction)) / direction[axis];
   return result;
-}
-
-DepthToEye fromTable(Block block, float sigma, vec3 direction) {
-  const int axis = majorAxis(direction);
-  float unsaturated;
-  vec3 middle = vec3(tableDepth(block, unsaturated), 0.0, 0.0);
-  if (frame.gradient != 0) middle.yz = vec2(tableSlope(block, (axis + 1) % 3), tableSlope(block, (axis + 2) % 3));
-  const float unsaturatedSigma = unsaturated * sigma, layerDepth = unsaturatedSigma * layerLength(direction);
-  return inFrontOf(block, direction, axis, middle, layerDepth,
-                   frame.pathLengthCorrection != 0 ? layerDepth : unsaturatedSigma * frame.voxelSize);
-}
-
-// `sigma` is the block's extinction.
-DepthToEye depthToEye(Block block, float sigma) {
-  if (frame.lookup == kLookupNone) return DepthToEye(0.0, vec3(0.0));
-  return fromTable(block, sigma, directionToEye(block.center));
 }
 
 #endif

@@ -32,7 +32,6 @@ struct Light {
   FaceRays fans[6];   // kLookupExact: rays from the light, by fanIndex; at infinity six times the same
 };
 
-// The lighting of a frame.
 // Codes of 16 bits a block, in bricks: of scalars, or of depths towards a light.
 struct CodeBricks {
   uvec2 numbers, codes;  // device addresses of the bricks' numbers by cell (0 is the empty brick) and of the codes
@@ -40,6 +39,7 @@ struct CodeBricks {
   ivec3 cells;           // number of bricks along the axes
 };
 
+// The lighting of a frame.
 struct FrameLighting {
   int lightCount;
   int lookup;                    // kLookup... for the transmittance to lights

@@ -37,7 +37,7 @@ float extinctionOf(ivec3 cell) {
 // On the side from which rays come, there is nothing in front of the first plane.
 float depthUpTo(FaceRays fan, vec3 position) {
   const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
-  return plane < 0 ? 0.0 : rayDepth(fan, position).x;
+  return plane < 0 ? 0.0 : rayDepth(fan, position);
 }
 
 // The depth in front of a layer lacks half of the layer. For scalars the depth is that of the next voxel

@@ -20,7 +20,7 @@ const float kAtSource = 1e-3;  // in voxels: at a smaller distance from a light 
 
 float depthUpTo(vec3 position) {
   const int plane = (int(round(position[planes.fan.axis])) - planes.fan.firstPlane) * planes.fan.direction;
-  return plane < 0 ? 0.0 : rayDepth(planes.fan, position).x;
+  return plane < 0 ? 0.0 : rayDepth(planes.fan, position);
 }
 
 uint codeOf(ivec2 side, int plane) {

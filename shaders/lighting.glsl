@@ -24,7 +24,7 @@ struct SeenBlock {
 
 // The depth at the block's centre. If that lies between two planes, the mean of the line of sight's depths on
 // both.
-vec3 rayDepthOf(FaceRays fan, Block block, vec3 direction) {
+float rayDepthOf(FaceRays fan, Block block, vec3 direction) {
   if (block.extent[fan.axis] % 2 == 1) return rayDepth(fan, block.center);
   return 0.5 * (rayDepth(fan, block.center + 0.5 * direction) + rayDepth(fan, block.center - 0.5 * direction));
 }
@@ -130,7 +130,7 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
   }
   float depth, unsaturated = 1.0;
   if (frame.lighting.lookup == kLookupExact)
-    depth = rayDepthOf(lights[light].fans[fanIndex(-toLight)], seen.block, toLight).x;
+    depth = rayDepthOf(lights[light].fans[fanIndex(-toLight)], seen.block, toLight);
   else
     depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, unsaturated);
   const vec3 way = normalize(frame.indexToWorld * toLight);

@@ -1,5 +1,4 @@
-// Optical depth between the source of a ray sweep and a position on one of its planes, and its derivatives
-// within the plane.
+// Optical depth between the source of a ray sweep and a position on one of its planes.
 #ifndef RAY_LOOKUP_GLSL
 #define RAY_LOOKUP_GLSL
 #include "catmull_rom.glsl"
@@ -29,7 +28,6 @@ int fanIndex(vec3 fromSource) {
   return 2 * axis + (fromSource[axis] > 0.0 ? 1 : 0);
 }
 
-const float kSmoothRange = 1.0;  // range of the depths of neighbouring rays up to which they are taken as a smooth function
 
 // Where a position lies between the rays of a plane.
 struct RayPlace {
@@ -53,48 +51,25 @@ RayPlace rayPlace(FaceRays fan, vec3 position, int plane) {
   return place;
 }
 
-// The depth, and its change per voxel along the two sides of the face.
-vec3 rayDepth(FaceRays fan, vec3 position) {
-  if (fan.planeCount == 0) return vec3(0.0);  // only for a voxel at the source
+float rayDepth(FaceRays fan, vec3 position) {
+  if (fan.planeCount == 0) return 0.0;  // only for a voxel at the source
   // At the source, the first axis.
   const int plane = clamp((int(round(position[fan.axis])) - fan.firstPlane) * fan.direction, 0, fan.planeCount - 1);
   const RayPlace at = rayPlace(fan, position, plane);
   const vec2 w = at.within;
-  const float apart = at.apart;
   const uint row = uint(fan.rayCount.x);
   uint first = at.first;
   const uvec2 pair = pairAddress(fan, plane / 2);
-  const vec4 weightsX = cubicWeights(w.x), slopesX = cubicSlopes(w.x);
-  const vec4 weightsY = cubicWeights(w.y), slopesY = cubicSlopes(w.y);
-  vec3 sum = vec3(0.0);
+  const vec4 weightsX = cubicWeights(w.x), weightsY = cubicWeights(w.y);
+  float sum = 0.0;
   [[unroll]] for (int j = 0; j < 4; ++j) {
     vec4 line;
     [[unroll]] for (int i = 0; i < 4; ++i) line[i] = unpackUnorm2x16(rayCodes(pair, first + i))[at.odd];
     line *= line * kOpaqueDepth;
-    const float value = dot(line, weightsX);
-    sum += vec3(value * weightsY[j], vec2(dot(line, slopesX) * weightsY[j], value * slopesY[j]) / apart);
+    sum += dot(line, weightsX) * weightsY[j];
     first += row;
   }
-  return vec3(max(sum.x, 0.0), sum.yz);
-}
-
-// The transmittance between the source and a position on one of its planes. Where the rays around it pass an opaque edge, their depths
-// say nothing about the depth in between, and transmittances are interpolated instead: a part of the light then passes the edge.
-float rayTransmittance(FaceRays fan, vec3 position) {
-  if (fan.planeCount == 0) return 1.0;
-  const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
-  if (plane < 0) return 1.0;
-  const int kept = min(plane, fan.planeCount - 1);
-  const RayPlace at = rayPlace(fan, position, kept);
-  const uvec2 pair = pairAddress(fan, kept / 2);
-  vec4 inner;
-  [[unroll]] for (int i = 0; i < 4; ++i)
-    inner[i] = unpackUnorm2x16(rayCodes(pair, at.first + 1 + (i & 1) + uint(fan.rayCount.x) * (1 + (i >> 1))))[at.odd];
-  inner *= inner * kOpaqueDepth;
-  const float range = max(max(inner.x, inner.y), max(inner.z, inner.w)) - min(min(inner.x, inner.y), min(inner.z, inner.w));
-  const vec2 x = vec2(1.0 - at.within.x, at.within.x);
-  const float linear = dot(exp(-inner), vec4(x * (1.0 - at.within.y), x * at.within.y));
-  return mix(exp(-rayDepth(fan, position).x), linear, smoothstep(kSmoothRange, 3.0 * kSmoothRange, range));
+  return max(sum, 0.0);
 }
 
 #endif

@@ -87,7 +87,7 @@ const std::vector<OptionHelp> kLightHelp{
      "volume [1,1,1]"},
     {"light-attenuation",
      "Shadows of lights: looked up in the attenuation table, or exact, along rays that are swept once for each light; auto: "
-     "exact if it takes at most a quarter of the device's memory and --attenuation is not nearest [auto]",
+     "exact, unless --attenuation is nearest, or splats need more than a quarter of the device's memory for it [auto]",
      true},
     {"shading",
      "What a voxel does with light: scatter it as fog, or reflect it like a surface across the gradient; auto: gradient with a "

@@ -15,7 +15,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kMinThreshold = 1e-5, kMaxThreshold = 0.1;
+constexpr double kMinThreshold = 1e-6, kUsualThreshold = 1.0 / 512.0, kMaxThreshold = 0.1;
 
 /// What is not given comes to.
 struct Usual {
@@ -65,11 +65,20 @@ bool drawDetail(MethodDescription& method, const Usual& usual) {
   changed |= tick("Culling", method.culling, usual.splats.culling);
   hint("Leaves out blocks outside of the image, and the rest of rays that nothing shows behind", "--culling");
   ImGui::BeginDisabled(!method.culling.value_or(usual.splats.culling));
-  double threshold = std::max(method.cullThreshold.value_or(usual.threshold), kMinThreshold);
+  double threshold = method.cullThreshold.value_or(usual.threshold);
+  bool hides = threshold > 0.0;
+  if (tick("Threshold", hides)) {
+    threshold = hides ? kUsualThreshold : 0.0;
+    method.cullThreshold = threshold;
+    changed = true;
+  }
+  ImGui::BeginDisabled(!hides);
+  threshold = std::max(threshold, kMinThreshold);
   if (slideLogarithmic("Cull threshold", threshold, kMinThreshold, kMaxThreshold)) {
     method.cullThreshold = threshold;
     changed = true;
   }
+  ImGui::EndDisabled();
   hint("Share of the light that reaches the eye, below which blocks are left out and rays end", "--cull-threshold");
   ImGui::EndDisabled();
   return changed;

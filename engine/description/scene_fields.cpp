@@ -300,18 +300,8 @@ void addMethod(std::vector<SceneField>& fields) {
   using Method = MethodDescription;
   Section<Method> section(fields, "method", &SceneDescription::method);
   section.add("composite", &Method::composite, words(kCompositeWords));
-  // Scene files of earlier versions have "auto" where these are not given, and "exact" for what gathering does.
-  const auto addUnlessFormer = [&](const std::string& name, auto member, const auto& codec) {
-    section.add(
-        name, codec.kind, codec.form,
-        [=](Method& method, const Texts& given) {
-          (method.*member).reset();
-          if (given.back() != "auto" && given.back() != "exact") method.*member = codec.read(marked(name), given.back());
-        },
-        [=](const Method& method) { return method.*member ? Texts{codec.text(*(method.*member))} : Texts{}; });
-  };
-  addUnlessFormer("draw", &Method::draw, words(kDrawWords));
-  addUnlessFormer("attenuation", &Method::attenuation, words(kAttenuationWords));
+  section.add("draw", &Method::draw, words(kDrawWords));
+  section.add("attenuation", &Method::attenuation, words(kAttenuationWords));
   section.add("directions", &Method::directions, words(kDirectionWords));
   section.add("code", &Method::code, words(kCodeWords));
   section.add("path-length-correction", &Method::pathLengthCorrection, truth(Kind::Switch));

@@ -163,12 +163,17 @@ bool SceneFile::hasVolume() const {
   return root_->contains("input") && root_->at("input").contains("volume");
 }
 
+/// Whether the value is a word of earlier versions for what need not be given: "auto" was the default, "exact" is what gathering does.
+static bool isFormerDefault(const SceneField& field, const Json& value) {
+  return (field.name == "draw" && value == "auto") || (field.name == "attenuation" && (value == "auto" || value == "exact"));
+}
+
 void SceneFile::applyTo(SceneDescription& description, const std::function<bool(const SceneField&)>& wanted) const {
   std::vector<const SceneField*> given;
   for (const auto& [section, keys] : root_->items())
     for (const auto& [key, value] : keys.items()) {
       const SceneField& field = find(section, key);
-      if (wanted && !wanted(field)) continue;
+      if ((wanted && !wanted(field)) || isFormerDefault(field, value)) continue;
       const auto texts = fieldTexts(field, value, file_.parent_path(), fmt::format("scene '{}': {}", file_.string(), quoted(field)));
       if (!texts.empty()) try {
           field.read(description, texts);

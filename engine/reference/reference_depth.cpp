@@ -235,8 +235,8 @@ double extinctionOf(const Block& block, const Volume& volume, std::span<const do
 glm::dvec3 emissionOf(const Block& block, const Volume& volume, std::span<const glm::dvec3> emission,
                       std::span<const LevelData> coarser) {
   const LevelData* level = block.level == 0 ? nullptr : &coarser[std::size_t(block.level) - 1];
-  const bool isOpaqueTowardsEye = level == nullptr ? emission.empty() : level->emission.empty();
-  if (isOpaqueTowardsEye || isOutside(block, level, volume)) return glm::dvec3(0.0);
+  const bool isDark = level == nullptr ? emission.empty() : level->emission.empty();
+  if (isDark || isOutside(block, level, volume)) return glm::dvec3(0.0);
   if (level == nullptr) return emission[volume.at(block.cell.x, block.cell.y, block.cell.z)];
   return level->emission[level->at(block.cell)];
 }

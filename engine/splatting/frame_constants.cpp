@@ -1,12 +1,13 @@
 // The constants of a frame: the camera's rays in index space, relative to the volume's middle, and how splats
 // are drawn.
 
+#include "engine/splatting/frame_constants.h"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
 #include "engine/scene/footprint.h"
-#include "engine/splatting/splat_pass.h"
 #include "engine/volume/packed_light.h"
 
 namespace freevoxels {

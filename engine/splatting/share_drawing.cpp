@@ -13,8 +13,7 @@ constexpr std::size_t kSharesAtOnce = 16;
 
 FixedSums ShareDrawing::draw(Commands& commands, Inputs inputs, const SharePart& part, std::vector<StageTime>& times,
                              const Progress& progress) {
-  list_.record(commands, inputs.drawing.volume, *inputs.drawing.visible, inputs.drawing.chunkCount, inputs.mostBlocks,
-               inputs.wholeLevel);
+  list_.record(commands, inputs.drawing.volume, *inputs.drawing.visible, inputs.mostBlocks, inputs.wholeLevel);
   accumulate_.recordClear(commands, std::move(inputs.layout));
   commands.submitAndWait(progress);
   addTimes(times, commands.times());
@@ -35,7 +34,7 @@ FixedSums ShareDrawing::draw(Commands& commands, Inputs inputs, const SharePart&
       inputs.drawing.chunkCount = chunks[share];
       inputs.splats.record(drawing, inputs.drawing, inputs.frame, inputs.targets);
       accumulate_.record(drawing, inputs.frame, inputs.targets);
-      inputs.drawing.continued = inputs.drawing.sameFrame = true;  // the targets are 0 again
+      inputs.drawing.continued = true;  // the targets are 0 again
     }
     drawing.submitAndWait();
     addTimes(times, drawing.times());

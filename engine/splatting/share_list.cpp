@@ -64,8 +64,8 @@ const CutCandidates* ShareList::candidates(const SharePart& part) {
   return &candidates_->of(part);
 }
 
-void ShareList::record(Commands& commands, const DeviceVolume& volume, const BlockList& drawn, std::uint32_t chunkCount,
-                       std::uint64_t mostBlocks, std::optional<int> wholeLevel) {
+void ShareList::record(Commands& commands, const DeviceVolume& volume, const BlockList& drawn, std::uint64_t mostBlocks,
+                       std::optional<int> wholeLevel) {
   if (wholeLevel && wholeLevel == groupedLevel_) return;
   groupedLevel_.reset();  // until the commands are done
   recordedLevel_ = wholeLevel;
@@ -75,7 +75,7 @@ void ShareList::record(Commands& commands, const DeviceVolume& volume, const Blo
   commands.beginPass("shares");
   commands.clear(counts_);
   // Also without blocks: the first invocation writes the number of pairs, which the sort reads.
-  commands.dispatchLinear(keys_, bindings, shader::ShareKeyPush{chunkCount}, std::max<std::uint64_t>(mostBlocks, 1));
+  commands.dispatchLinear(keys_, bindings, shader::ShareKeyPush{drawn.chunkCount}, std::max<std::uint64_t>(mostBlocks, 1));
   commands.barrier(kComputeStage, kComputeStage);
   sort_.record(commands, pairs_, kShareBits);
 }

@@ -22,10 +22,10 @@ class ShareList {
   /// The candidates of a cut for these shares; null: all blocks, of which all shares are drawn.
   const CutCandidates* candidates(const SharePart& part);
 
-  /// Groups the blocks of the first `chunkCount` draw chunks of `drawn`, at most `mostBlocks`, by share. Within a share blocks keep
-  /// their order. If they are all blocks of a level, `wholeLevel`, they stay grouped for later frames.
-  void record(Commands& commands, const DeviceVolume& volume, const BlockList& drawn, std::uint32_t chunkCount,
-              std::uint64_t mostBlocks, std::optional<int> wholeLevel);
+  /// Groups the blocks of `drawn`, at most `mostBlocks`, by share. Within a share blocks keep their order. If they are all blocks of a
+  /// level, `wholeLevel`, they stay grouped for later frames.
+  void record(Commands& commands, const DeviceVolume& volume, const BlockList& drawn, std::uint64_t mostBlocks,
+              std::optional<int> wholeLevel);
 
   /// After the recorded commands are complete: makes the draw chunks of these shares, which chunks() then
   /// has. Blocks until the device is done.

@@ -110,7 +110,7 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     commands.transition(*target, inputs.continued ? VK_IMAGE_LAYOUT_GENERAL : VK_IMAGE_LAYOUT_UNDEFINED,
                         VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kOutput | kComputeStage, kOutput);
 
-  if (!inputs.sameFrame) recordFrame(commands, inputs.volume, frame);
+  if (!inputs.continued) recordFrame(commands, inputs.volume, frame);
   const std::uint32_t endChunk = inputs.firstChunk + inputs.chunkCount;
   for (std::uint32_t chunk = inputs.firstChunk; chunk < endChunk; ++chunk) {
     const VkDeviceSize arguments = chunk * sizeof(shader::ChunkArguments);
@@ -120,9 +120,8 @@ void SplatPass::record(Commands& commands, const Inputs& inputs, const FrameCons
     if (inputs.onSplats) inputs.onSplats(splats_, chunk);
     commands.beginPass("splat draw");
     commands.barrier(kComputeStage, kDraw);
-    beginRendering(
-        commands, targets, frame,
-        chunk == 0 && !inputs.continued ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
+    beginRendering(commands, targets, frame,
+                   chunk == inputs.firstChunk && !inputs.continued ? VK_ATTACHMENT_LOAD_OP_CLEAR : VK_ATTACHMENT_LOAD_OP_LOAD);
     commands.bind(pipeline, draw, &frame.splat, sizeof(frame.splat));
     const std::size_t offset = frame.quads ? offsetof(shader::ChunkArguments, quadVertexCount)
                                            : offsetof(shader::ChunkArguments, vertexCount);

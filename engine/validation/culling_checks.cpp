@@ -16,7 +16,7 @@ namespace freevoxels {
 namespace {
 
 constexpr float kAmplification = 20.0f;
-constexpr float kHiddenTransmittance = 1.0f / 512.0f;
+constexpr float kHiddenTransmittance = 1e-5f;
 
 struct View {
   std::string name;

@@ -10,6 +10,7 @@
 #include "engine/octree/volume_builder.h"
 #include "engine/visibility/cull_rule.h"
 #include "engine/visibility/cut_candidates.h"
+#include "engine/visibility/cut_counts.h"
 #include "engine/visibility/detail_rule.h"
 
 namespace freevoxels {
@@ -24,17 +25,6 @@ struct CutInputs {
   const DetailRule& detail;
   const CullRule& cull;
   const CutCandidates* candidates = nullptr;  ///< null: all blocks
-};
-
-/// Numbers of blocks of all levels that were considered: those of the coarsest level, and those whose parent
-/// was opened.
-struct CutCounts {
-  std::uint64_t considered = 0;      ///< the sum of the others
-  std::uint64_t empty = 0;           ///< not occupied
-  std::uint64_t outside = 0;         ///< left out with all blocks in them: outside of the image
-  std::uint64_t hidden = 0;          ///< left out with all blocks in them: hidden, as the table says
-  std::uint64_t opened = 0;          ///< replaced by their children
-  std::vector<std::uint64_t> drawn;  ///< number of drawn blocks by level, level 0 first
 };
 
 /// COMPUTE cut_select.comp level by level from the coarsest, compact_scan.comp, cut_write.comp. Nothing is read back.

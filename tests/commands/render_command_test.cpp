@@ -143,7 +143,7 @@ TEST_F(RenderCommand, AFileLooksAsTheVolumeItWasGeneratedFrom) {
 TEST_F(RenderCommand, DefaultsAreWhatTheHelpSays) {
   const std::string standard = render("");
   EXPECT_EQ(standard, render("--orbit 35,25 --fov 35 --up 0,1,0 --albedo 0.9,0.9,0.9"));
-  EXPECT_EQ(standard, render("--composite normalised --attenuation auto --directions 26 --code depth8 "
+  EXPECT_EQ(standard, render("--composite normalised --directions 26 --code depth8 "
                              "--path-length-correction"));
   EXPECT_EQ(standard, render("--fov 60 --fov 35"));  // the last counts
   EXPECT_NE(standard, render("--orbit 36,25"));

@@ -150,7 +150,7 @@ TEST(SceneJson, WrongFilesAreRefusedByFileAndKey) {
   expect(R"({"camera": {"up": [0, null, 1]}})", R"("camera.up" takes X,Y,Z, not [0,null,1])");
   expect(R"({"camera": {"orbit": [1, 2], "camera-position": [1, 2, 3]}})", R"("camera.orbit" and "camera.camera-position" exclude each other)");
   expect(R"({"method": {"culling": "no"}})", R"("method.culling" takes true or false, not "no")");
-  expect(R"({"method": {"draw": "sketch"}})", "draw takes 'auto' or 'gather' or 'splats', not 'sketch'");
+  expect(R"({"method": {"draw": "sketch"}})", "draw takes 'gather' or 'splats', not 'sketch'");
   expect(R"({"light": {"lights": {"direction": [1, 0, 0]}}})", R"("light.lights" takes a list)");
   expect(R"({"light": {"lights": [{"direction": [0, 0, 0]}]}})", "points nowhere");
   expect(R"({"output": {"aov": "z"}})", "aov takes depth, position, normal and transmittance");

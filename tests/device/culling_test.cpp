@@ -38,7 +38,7 @@ class CullingTest : public DeviceTest {
     CutCounts counts;
     std::uint64_t voxels = 0;
   };
-  static constexpr float kHidden = 1.0f / 512.0f;
+  static constexpr float kHidden = 1e-5f;
   static Outcome expectSameImage(Renderer& renderer, const Camera& camera, FrameSettings settings, const std::string& name) {
     settings.splats().culling = false;
     const Image expected = renderer.render(camera, settings);

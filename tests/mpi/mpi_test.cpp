@@ -158,11 +158,12 @@ TEST_F(MpiTest, RanksWithDifferentFilesAreRefused) {
   EXPECT_FALSE(std::filesystem::exists(folder / "a.png"));
 }
 
-/// Rank 1 lacks memory for rays from the eye and would look transmittance up in the table: sums that must not be added.
+/// Rank 1 lacks memory for rays from the light and would look its shadows up in the table: sums that must not be added.
 TEST_F(MpiTest, RanksWhoseDevicesNeedOtherMethodsAreRefused) {
-  const ProgramResult result = runScript(2, "[ $OMPI_COMM_WORLD_RANK = 1 ] && less='--memory-limit 14'; exec " + std::string(FREEVOXELS_MPI_PROGRAM) +
-                                                " render procedural:cloud " + (folder / "a.png").string() +
-                                                " --resolution 96 --size 64 --camera-position 0.05,0.1,0 --look-at 0.3,0,-0.2 --unlit --draw splats $less");
+  const ProgramResult result =
+      runScript(2, "[ $OMPI_COMM_WORLD_RANK = 1 ] && less='--memory-limit 14'; exec " + std::string(FREEVOXELS_MPI_PROGRAM) +
+                       " render procedural:cloud " + (folder / "a.png").string() +
+                       " --resolution 96 --size 64 --light direction=1,1,0.3 --draw splats $less");
   EXPECT_EQ(result.exitCode, int(ExitCode::Input)) << result.err;
   EXPECT_NE(result.err.find("has a device that needs another method than rank 0"), std::string::npos) << result.err;
   EXPECT_NE(result.err.find("rank 1"), std::string::npos) << result.err;

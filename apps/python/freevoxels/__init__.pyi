@@ -78,9 +78,9 @@ class _Light(TypedDict, total=False):
     scattering_scale: float
 
 class _Method(TypedDict, total=False):
-    draw: Literal["auto", "gather", "splats"]
+    draw: Literal["gather", "splats"]
     composite: Literal["normalised", "additive", "sorted"]
-    attenuation: Literal["bilinear", "nearest", "exact", "auto"]
+    attenuation: Literal["bilinear", "nearest"]
     directions: Literal[26, 98]
     code: Literal["depth8", "linear8"]
     path_length_correction: bool
