@@ -205,7 +205,8 @@ class Survey {
 
 }  // namespace
 
-std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels) {
+std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels,
+                                   const Progress& progress) {
   if (description.input.grid) refuseMissingDensity(*description.input.grid, inputs);
   std::vector<Outline> frames;
   for (const std::string& input : inputs) attempt([&] { frames.push_back(outlineOf(description, input)); });
@@ -214,7 +215,7 @@ std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::spa
     const bool isRead = attempt([&] {
       const SceneDescription scene = description.of(frames[i].input);
       const auto baked = scene.input.baked();
-      survey.add(frames[i].input, std::make_shared<Volume>(baked ? bakedOutline(*baked) : scene.readVolume(maximumVoxels, 0, {}, true)));
+      survey.add(frames[i].input, std::make_shared<Volume>(baked ? bakedOutline(*baked) : scene.readVolume(maximumVoxels, 0, progress, true)));
     });
     if (isRead) frames[i].corners.clear();
   }

@@ -5,15 +5,13 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
-#include <limits>
 #include <utility>
 
 #include "apps/common/colored_parts.h"
 #include "apps/common/failure.h"
-#include "apps/common/film_view.h"
+#include "apps/common/film_scenes.h"
 #include "apps/common/share_group.h"
 #include "engine/cube_level.h"
-#include "engine/octree/volume_limits.h"
 #include "engine/storage/baked_source.h"
 #include "engine/volume/content_hash.h"
 #include "engine/vulkan/pipeline.h"
@@ -84,20 +82,18 @@ void FrameSeries::printDrawnElsewhere() {
 
 /// Whether all frames of the volume are skipped, and it does not decide how others are seen.
 bool FrameSeries::needsNoVolume(std::span<const FrameJob> jobs) const {
-  return std::ranges::all_of(jobs, &FrameJob::isSkipped) && (hasReference_ || !options_.fixedView);
+  return std::ranges::all_of(jobs, &FrameJob::isSkipped) && (film_->hasReference() || !options_.fixedView);
 }
 
 void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
-  const std::vector<std::string> inputs = volumesOf(jobs);
-  isFilm_ = inputs.size() > 1;
-  if (isFilm_ && !options_.fixedView) surveyFilm(inputs);
-  const bool isSurveyed = reference_.has_value();
+  film_.emplace(options_.scene.description, volumesOf(jobs), options_.fixedView);
+  surveyFilm();
   const int turn = int(framesOfFirstVolume(jobs));
-  VolumesAhead volumes(inputs, [this, isSurveyed, turn, jobs](const std::string& input) {
+  VolumesAhead volumes(film_->inputs(), [this, turn, jobs](const std::string& input) {
     const auto first = std::ranges::find(jobs, input, &FrameJob::input);
     const std::span<const FrameJob> own = jobs.subspan(std::size_t(first - jobs.begin()));
     if (needsNoVolume(own.first(framesOfFirstVolume(own)))) return std::shared_ptr<const VolumeSource>();
-    return options_.scene.description.of(input).openSource(turn, !isFilm_, isSurveyed);
+    return film_->read(input, turn);
   });
   std::size_t failed = 0;
   while (!jobs.empty()) {
@@ -106,25 +102,20 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
     if (!drawNext(volumes, own)) ++failed;
   }
   writer_.finish();
-  if (failed > 0) fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, inputs.size());
+  if (failed > 0) fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, film_->inputs().size());
   if (!waiting_.empty()) fail(ErrorKind::Input, "no frame of {} holds anything to draw", progress_.frames());
 }
 
-/// Chooses the view of all frames.
-void FrameSeries::surveyFilm(std::span<const std::string> inputs) {
+/// Chooses the view of all frames, where the film decides it.
+void FrameSeries::surveyFilm() {
+  if (!film_->isSeenAsAWhole()) return;
   progress_.begin("looking through the film");
   const StageTimer timer(report_.stages, "survey film");
-  std::optional<FilmView> view = viewOfFilm(options_.scene.description, inputs, kMaxNumberedVoxels);
+  const std::optional<FilmView> view = film_->survey();
   progress_.erase();
   if (!view) return;
-  reference_ = std::move(view->scene);
-  hasReference_ = true;
-  announce(*reference_, 1);
-  const auto nameOf = [](const std::string& input) { return std::filesystem::path(input).filename().string(); };
-  spdlog::info(
-      "camera and scales are those of the whole film, in which {} holds most{}; change it with --fixed-view, for those of the "
-      "first frame, or --no-fixed-view, for each frame's own",
-      nameOf(view->largest), view->brightest.empty() ? "" : fmt::format(" and {} shines most", nameOf(view->brightest)));
+  announce(view->scene, 1);
+  spdlog::info("{}; change it with --fixed-view, for those of the first frame, or --no-fixed-view, for each frame's own", remarkOf(*view));
 }
 
 /// Draws the frames of the next volume. False, after a message, for a volume of a film that is no volume.
@@ -145,13 +136,13 @@ bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs
     drawFrames(renderer, view, jobs);
     return true;
   } catch (const EmptyVolumeError& error) {
-    if (!isFilm_) throw;
+    if (!film_->isFilm()) throw;
     progress_.erase();
     spdlog::warn("{}; it becomes an image of the background", withOptions(error));
     for (const FrameJob& job : jobs) writeEmpty(job);
     return true;
   } catch (const Error& error) {
-    if (!isFilm_ || error.kind() != ErrorKind::Input) throw;
+    if (!film_->isFilm() || error.kind() != ErrorKind::Input) throw;
     progress_.erase();
     spdlog::error("{}", withOptions(error));
     return false;
@@ -161,14 +152,13 @@ bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs
 /// Resolves what a volume's frames have in common.
 FrameSeries::VolumeView FrameSeries::beginVolume(const std::shared_ptr<const VolumeSource>& source, std::span<const FrameJob> jobs) {
   std::shared_ptr<const Volume> volume = known(source);
-  const SceneDescription description = options_.scene.description.of(jobs.front().input);
-  const bool isFirst = !reference_, isFixed = options_.fixedView.value_or(isFilm_);
-  VolumeView view{
-      .scene = isFixed && !isFirst ? description.resolveLike(*reference_, std::move(volume)) : description.resolve(std::move(volume)),
-      .settings = options_.frameSettings()};
+  const std::string& input = jobs.front().input;
+  const bool isFirst = !film_->reference();
+  VolumeView view{.scene = film_->resolve(input, std::move(volume)), .settings = options_.frameSettings()};
   Scene& scene = view.scene;
   view.cameras = {scene.camera};
-  if (jobs.size() > 1) view.cameras = description.cameras(*scene.volume, scene.classification, int(jobs.size()));
+  if (jobs.size() > 1)
+    view.cameras = options_.scene.description.of(input).cameras(*scene.volume, scene.classification, int(jobs.size()));
   scene.camera = view.cameras.front();
   view.settings.lighting = scene.lighting;
   progress_.erase();
@@ -177,8 +167,6 @@ FrameSeries::VolumeView FrameSeries::beginVolume(const std::shared_ptr<const Vol
   else
     logWarnings(*scene.volume, !scene.classification.transferFunction);
   agree(scene, *source);
-  if (isFirst || !isFixed) reference_ = scene;
-  hasReference_ = true;
   return view;
 }
 
@@ -281,22 +269,18 @@ void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, c
 }
 
 void FrameSeries::writeEmpty(const FrameJob& job) {
-  if (!reference_) {
+  if (!film_->reference()) {
     waiting_.push_back(&job);
     return;
   }
   ++progress_.drawn;
   if (!options_.leads() || job.isSkipped) return;
-  const FrameSettings settings = options_.frameSettings();
-  const std::size_t pixels = std::size_t(settings.size.x) * std::size_t(settings.size.y);
-  Image image{.size = settings.size, .pixels = std::vector<glm::vec4>(pixels, glm::vec4(0.0f))};
-  if (settings.depth) image.depth.assign(pixels, std::numeric_limits<float>::infinity());
-  Scene view = *reference_;
+  Scene view = *film_->reference();
   Volume nothing;
   nothing.source = std::filesystem::path(job.input).filename().string();
   view.volume = std::make_shared<const Volume>(std::move(nothing));
   view.classification.emission.reset();
-  writer_.write(std::move(image), view, job);
+  writer_.write(emptyImage(options_.frameSettings()), view, job);
 }
 
 /// The report describes the last volume.

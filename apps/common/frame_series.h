@@ -1,7 +1,6 @@
 #pragma once
 // Draws the frames of a command on one device: one volume seen by one camera or by those of a turn, or the volumes of a film.
 
-#include <atomic>
 #include <future>
 #include <memory>
 #include <optional>
@@ -9,6 +8,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/film_scenes.h"
 #include "apps/common/frame_writer.h"
 #include "apps/common/render_options.h"
 #include "apps/common/series_progress.h"
@@ -51,7 +51,7 @@ class FrameSeries {
 
   bool needsNoVolume(std::span<const FrameJob> jobs) const;
   void drawVolumes(std::span<const FrameJob> jobs);
-  void surveyFilm(std::span<const std::string> inputs);
+  void surveyFilm();
   bool drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs);
   void drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs);
   void drawShares(Renderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job);
@@ -70,9 +70,7 @@ class FrameSeries {
   const Device& device_;
   RunReport& report_;
   SeriesProgress progress_;
-  bool isFilm_ = false;                     ///< whether there are several volumes
-  std::atomic<bool> hasReference_ = false;  ///< whether there is a reference_, also for the thread that reads volumes ahead
-  std::optional<Scene> reference_;          ///< the film's, or the first frame's with a fixed view, else the last one's
+  std::optional<FilmScenes> film_;  ///< of the frames of draw()
   FrameWriter writer_;
   AddingUp addingUp_;
   std::vector<const FrameJob*> drawnElsewhere_;  ///< frames of other processes of the group

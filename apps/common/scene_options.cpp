@@ -4,12 +4,12 @@
 
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <filesystem>
 #include <iterator>
 
 #include "apps/common/failure.h"
 #include "apps/common/option_help.h"
 #include "apps/common/program.h"
+#include "apps/common/sequence.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_json.h"
 #include "engine/volume/blackbody.h"
@@ -134,7 +134,7 @@ void SceneOptions::takeScene(const std::string& defaultEnding) {
   }
   if (files.empty() && !defaultEnding.empty()) {
     const std::string& named = !volume.empty() || !file ? volume : *file;
-    files = {proceduralName(named).value_or(std::filesystem::path(named).stem().string()) + defaultEnding};
+    files = {nameOfVolume(named) + defaultEnding};
   }
   applyScene();
   description.input.checkGiven();

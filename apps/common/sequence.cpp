@@ -9,6 +9,7 @@
 
 #include "apps/common/frame_names.h"
 #include "engine/core/error.h"
+#include "engine/description/scene_description.h"
 
 namespace freevoxels {
 
@@ -177,6 +178,41 @@ std::optional<Sequence> sequenceAround(const std::string& file) {
 bool isPattern(const std::string& file) {
   std::error_code unreadable;
   return hasNumberPlace(file) && !fs::exists(file, unreadable);
+}
+
+std::string nameOfVolume(const std::string& volume) {
+  return proceduralName(volume).value_or(fs::path(volume).stem().string());
+}
+
+NumberedVolumes findVolumes(std::span<const std::string> names, const std::optional<std::string>& frames) {
+  NumberedVolumes found;
+  for (const std::string& name : names) {
+    if (!isPattern(name)) {
+      found.volumes.push_back({name, int(found.volumes.size()), nameOfVolume(name)});
+      continue;
+    }
+    found.haveNumbers = true;
+    Sequence sequence = findSequence(name);
+    std::optional<FrameRange> range;
+    if (frames) {
+      range = readFrameRange(fmt::format("{}", Parameter("frames")), *frames);
+      sequence = selectFrames(sequence, *range);
+    }
+    if (const std::string gaps = gapsOf(sequence, range); !gaps.empty())
+      found.gaps.push_back(fmt::format("'{}' has no file of frame {}", name, gaps));
+    const NumberPlace place = placeOfNumber(sequence.pattern);
+    for (std::size_t i = 0; i < sequence.files.size(); ++i) {
+      // Files in numbered folders have one name.
+      const std::string ending = place.rest.empty() ? "" : "_" + sequence.numbers[i].text(place.digits);
+      found.volumes.push_back({sequence.files[i], sequence.numbers[i], nameOfVolume(sequence.files[i]) + ending});
+    }
+  }
+  for (std::size_t i = 1; i < found.volumes.size(); ++i)
+    if (found.volumes[i].file == found.volumes[i - 1].file)
+      fail(ErrorKind::Usage, "'{}' is named twice: name it once", found.volumes[i].file);
+  if (frames && !found.haveNumbers)
+    fail(ErrorKind::Usage, "{} chooses among the files of a pattern: name one, as in smoke_####.vdb", Parameter("frames"));
+  return found;
 }
 
 }  // namespace freevoxels

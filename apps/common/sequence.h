@@ -3,6 +3,7 @@
 
 #include <limits>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -44,5 +45,26 @@ std::optional<Sequence> sequenceAround(const std::string& file);
 
 /// Whether it names a sequence, not a file.
 bool isPattern(const std::string& file);
+
+/// A volume of a film.
+struct NumberedVolume {
+  std::string file;
+  FrameNumber number;
+  std::string name;  ///< of its images, where these have none of their own
+};
+
+/// The volumes of a film, in its order.
+struct NumberedVolumes {
+  std::vector<NumberedVolume> volumes;
+  bool haveNumbers = false;       ///< whether some are of a pattern
+  std::vector<std::string> gaps;  ///< a sentence for each pattern that has no file of some number
+};
+
+/// The volumes of files and patterns. `frames`, which readFrameRange reads, chooses among the files of patterns. Fails as findSequence and
+/// selectFrames do, and with ErrorKind::Usage where `frames` chooses among nothing, or two neighbours are one file.
+NumberedVolumes findVolumes(std::span<const std::string> names, const std::optional<std::string>& frames);
+
+/// "cloud" of "a/cloud.vdb" and of "procedural:cloud".
+std::string nameOfVolume(const std::string& volume);
 
 }  // namespace freevoxels

@@ -16,12 +16,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-struct NumberedVolume {
-  std::string file;
-  FrameNumber number;
-  std::string name;  ///< of its images, where these have none of their own
-};
-
 /// Whether a word behind IN is another volume. What is neither a volume nor an image is left to be refused as an image.
 bool isVolume(const std::string& word) {
   std::error_code unreadable;
@@ -33,30 +27,6 @@ std::vector<std::string> takeVolumes(std::vector<std::string>& outputs) {
   const auto images = std::stable_partition(outputs.begin(), outputs.end(), isVolume);
   std::vector<std::string> volumes(outputs.begin(), images);
   outputs.erase(outputs.begin(), images);
-  return volumes;
-}
-
-/// "cloud" of "a/cloud.vdb" and of "procedural:cloud".
-std::string nameOf(const std::string& volume) {
-  return proceduralName(volume).value_or(fs::path(volume).stem().string());
-}
-
-std::vector<NumberedVolume> framesOf(const std::string& pattern, const std::optional<std::string>& frames) {
-  Sequence sequence = findSequence(pattern);
-  std::optional<FrameRange> range;
-  if (frames) {
-    range = readFrameRange("--frames", *frames);
-    sequence = selectFrames(sequence, *range);
-  }
-  if (const std::string gaps = gapsOf(sequence, range); !gaps.empty()) spdlog::warn("'{}' has no file of frame {}", pattern, gaps);
-  std::vector<NumberedVolume> volumes;
-  const NumberPlace place = placeOfNumber(sequence.pattern);
-  for (std::size_t i = 0; i < sequence.files.size(); ++i) {
-    const FrameNumber& number = sequence.numbers[i];
-    // Files in numbered folders have one name.
-    const std::string ending = place.rest.empty() ? "" : "_" + number.text(place.digits);
-    volumes.push_back({sequence.files[i], number, nameOf(sequence.files[i]) + ending});
-  }
   return volumes;
 }
 
@@ -95,31 +65,20 @@ std::vector<FrameJob> SequenceOptions::plan(SceneOptions& scene) const {
   scene.takeScene(extensions.front());
   inputs.insert(inputs.begin(), scene.description.input.volume);
 
-  std::vector<NumberedVolume> volumes;
-  bool hasPattern = false;
-  for (const std::string& input : inputs) {
-    if (!isPattern(input)) {
-      volumes.push_back({input, int(volumes.size()), nameOf(input)});
-      continue;
-    }
-    hasPattern = true;
-    for (NumberedVolume& volume : framesOf(input, frames)) volumes.push_back(std::move(volume));
-  }
-  for (std::size_t i = 1; i < volumes.size(); ++i)
-    if (volumes[i].file == volumes[i - 1].file) fail(ErrorKind::Usage, "'{}' is named twice: name it once", volumes[i].file);
-  if (frames && !hasPattern) fail(ErrorKind::Usage, "--frames chooses among the files of a pattern: name one, as in smoke_####.vdb");
+  const NumberedVolumes found = findVolumes(inputs, frames);
+  for (const std::string& gap : found.gaps) spdlog::warn("{}", gap);
 
   const auto placed = [&](const std::string& file) {
     return folder && !fs::path(file).has_parent_path() ? (fs::path(*folder) / file).string() : file;
   };
   std::vector<FrameJob> plan;
-  for (const NumberedVolume& volume : volumes) {
+  for (const NumberedVolume& volume : found.volumes) {
     FrameJob& frame = plan.emplace_back(FrameJob{.input = volume.file, .files = {}});
     if (namesAreOfVolumes)
       for (const std::string& extension : extensions) frame.files.push_back(placed(volume.name + extension));
     else
       for (const std::string& file : scene.files)
-        frame.files.push_back(placed(hasPattern || volumes.size() > 1 ? frameName(file, volume.number) : file));
+        frame.files.push_back(placed(found.haveNumbers || found.volumes.size() > 1 ? frameName(file, volume.number) : file));
   }
   if (folder) {
     std::error_code seenWhenWriting;
