@@ -83,4 +83,11 @@ bool DrawingTurns::anyIsHeldByThisThread() {
   return turnsOfThisThread > 0;
 }
 
+FrameTurn::FrameTurn(DrawingTurns& turns, bool& isDrawing) : lock_(turns), isDrawing_(isDrawing) {
+  if (isDrawing)
+    fail(ErrorKind::Usage,
+         "a renderer cannot draw a frame in the progress function of another of its frames: use a second renderer, or draw it afterwards");
+  isDrawing_ = true;
+}
+
 }  // namespace freevoxels

@@ -2,6 +2,7 @@
 // Whose turn it is to draw on a device.
 
 #include <functional>
+#include <mutex>
 #include <thread>
 
 namespace freevoxels {
@@ -25,6 +26,20 @@ class DrawingTurns {
 
   std::thread::id holder_;
   int depth_ = 0;  ///< how often `holder_` has locked
+};
+
+/// The turn of a frame on a device, for as long as this object exists. Fails with ErrorKind::Usage in the progress function of another
+/// frame of the same renderer, of which `isDrawing` says whether it draws.
+class FrameTurn {
+ public:
+  FrameTurn(DrawingTurns& turns, bool& isDrawing);
+  ~FrameTurn() { isDrawing_ = false; }
+  FrameTurn(const FrameTurn&) = delete;
+  FrameTurn& operator=(const FrameTurn&) = delete;
+
+ private:
+  const std::lock_guard<DrawingTurns> lock_;
+  bool& isDrawing_;
 };
 
 }  // namespace freevoxels

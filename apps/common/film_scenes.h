@@ -25,6 +25,7 @@ class FilmScenes {
   bool isFilm() const { return inputs_.size() > 1; }
   /// Whether frames are seen as a reference is, and not each by itself.
   bool isFixed() const { return isFixed_.value_or(isFilm()); }
+  bool isSurveyed() const { return isSurveyed_; }
   /// Whether the film decides how its frames are seen.
   bool isSeenAsAWhole() const { return isFilm() && !isFixed_; }
 

@@ -3,13 +3,13 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
-#include <cmath>
 #include <filesystem>
 #include <utility>
 
 #include "apps/common/colored_parts.h"
 #include "apps/common/failure.h"
 #include "apps/common/film_scenes.h"
+#include "apps/common/output_options.h"
 #include "apps/common/share_group.h"
 #include "engine/cube_level.h"
 #include "engine/storage/baked_source.h"
@@ -32,19 +32,6 @@ std::string whyNothingIsSeen(bool isTransparent) {
 
 bool showsNothing(const Image& image) {
   return std::ranges::none_of(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.0f || pixel.r + pixel.g + pixel.b > 0.0f; });
-}
-
-/// Makes pixels black of which some number is NaN or infinite, which light beyond the range of single precision makes of them;
-/// returns how many there were.
-std::size_t clearPixelsThatAreNoNumbers(Image& image) {
-  std::size_t cleared = 0;
-  for (glm::vec4& pixel : image.pixels) {
-    const float sum = pixel.r + pixel.g + pixel.b + pixel.a;
-    if (std::isfinite(sum)) continue;
-    pixel = glm::vec4(0.0f);
-    ++cleared;
-  }
-  return cleared;
 }
 
 /// Says which cubes of a volume the last frame drew, if it did.
@@ -261,9 +248,7 @@ void FrameSeries::finishAddingUp() {
 void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job) {
   const std::string name = progress_.frames() == 1 ? "" : job.files.front() + ": ";
   progress_.erase();
-  if (const std::size_t pixels = clearPixelsThatAreNoNumbers(image); pixels > 0)
-    spdlog::warn("{}{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", name,
-                 pixels);
+  if (const std::string cleared = clearPixelsThatAreNoNumbers(image); !cleared.empty()) spdlog::warn("{}{}", name, cleared);
   if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(isTransparent));
   writer_.write(std::move(image), view, job);
 }

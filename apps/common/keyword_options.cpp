@@ -18,8 +18,8 @@ using Json = nlohmann::json;
 
 const std::vector<std::string> kDeviceKeys{"device", "memory-limit"};
 /// Options of `freevoxels render` that are no fields of a scene.
-const std::vector<std::string> kCommandLineKeys{"share",  "sums",       "color-parts", "fixed-view", "out-dir",
-                                                "format", "save-scene", "timings",     "range",      "skip-existing"};
+const std::vector<std::string> kCommandLineKeys{"share", "sums", "color-parts", "out-dir", "format", "save-scene", "timings", "range"};
+const std::vector<std::string> kSequenceKeys{"fixed-view", "skip-existing"};
 
 /// The name of the field that a keyword means: "density-scale" for "density_scale".
 std::string nameOf(std::string keyword) {
@@ -55,6 +55,8 @@ class Reader {
 void Reader::refuse(const std::string& section, const std::string& name) const {
   if (section.empty() && std::ranges::find(kCommandLineKeys, name) != kCommandLineKeys.end())
     fail(ErrorKind::Usage, "{} is an option of the command line alone: leave it out", Parameter(name));
+  if (section.empty() && std::ranges::find(kSequenceKeys, name) != kSequenceKeys.end())
+    fail(ErrorKind::Usage, "{} is an option of sequences: leave it out", Parameter(name));
   std::vector<std::string> known;
   for (const SceneField& field : sceneFields()) {
     if (uses(field.section)) known.push_back(field.name);
@@ -134,6 +136,23 @@ KeywordOptions::KeywordOptions(const std::vector<Json>& layers, const Sections& 
   Reader reader(*this, sections);
   for (const Json& layer : layers) reader.read(layer);
   reader.readSceneFile();
+}
+
+KeywordOptions::Sections KeywordOptions::sections(bool ofFile, bool choosesDevice) {
+  Sections names{"classification", "emission", "camera", "light", "method", "scene"};
+  if (ofFile) names.emplace_back("input");
+  if (choosesDevice) names.emplace_back("device");
+  return names;
+}
+
+std::optional<Json> takeKey(Json& keywords, const std::string& name) {
+  for (const auto& [key, value] : keywords.items()) {
+    if (nameOf(key) != name) continue;
+    Json taken = value;
+    keywords.erase(key);
+    return taken;
+  }
+  return std::nullopt;
 }
 
 }  // namespace freevoxels

@@ -2,6 +2,7 @@
 // Scenes as JSON values: those of the library, and the keyword arguments of Python.
 
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -23,8 +24,14 @@ struct KeywordOptions {
   /// for fields of an object that exclude each other, with ErrorKind::Input for values of a wrong type.
   KeywordOptions(const std::vector<nlohmann::json>& layers, const Sections& sections);
 
+  /// The sections of the options of a frame, or of a file as well; of the device only where they choose it.
+  static Sections sections(bool ofFile, bool choosesDevice);
+
   SceneDescription scene;
   DeviceOptions device;
 };
+
+/// Takes the key of a name, with '-' or '_', out of an object; nothing if it has none. Keys of sections are not looked at.
+std::optional<nlohmann::json> takeKey(nlohmann::json& keywords, const std::string& name);
 
 }  // namespace freevoxels

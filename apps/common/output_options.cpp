@@ -4,6 +4,7 @@
 #include <unistd.h>
 
 #include <algorithm>
+#include <cmath>
 #include <cstdio>
 #include <filesystem>
 
@@ -100,6 +101,18 @@ void writeImages(const Image& whole, const OutputDescription& output, std::span<
     else
       writePng(file, image, output.look(), pngBits(output));
   }
+}
+
+std::string clearPixelsThatAreNoNumbers(Image& image) {
+  std::size_t cleared = 0;
+  for (glm::vec4& pixel : image.pixels) {
+    const float sum = pixel.r + pixel.g + pixel.b + pixel.a;
+    if (std::isfinite(sum)) continue;
+    pixel = glm::vec4(0.0f);
+    ++cleared;
+  }
+  if (cleared == 0) return "";
+  return fmt::format("{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", cleared);
 }
 
 void printNames(std::span<const std::string> files) {

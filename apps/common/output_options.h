@@ -36,6 +36,10 @@ void checkOutputs(const OutputDescription& output, std::span<const std::string> 
 /// Writes each file completely or not at all, and to standard output one image after another.
 void writeImages(const Image& image, const OutputDescription& output, std::span<const std::string> files, const ExrOptions& exr);
 
+/// Makes pixels black of which some number is NaN or infinite, which light beyond the range of single precision makes of them. A sentence
+/// that says so; empty if there are none.
+std::string clearPixelsThatAreNoNumbers(Image& image);
+
 /// Prints the names of images that are complete, unless one is written to standard output.
 void printNames(std::span<const std::string> files);
 

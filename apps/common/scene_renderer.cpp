@@ -3,6 +3,7 @@
 #include <functional>
 #include <utility>
 
+#include "apps/common/frame_camera.h"
 #include "apps/common/output_options.h"
 #include "apps/common/program.h"
 #include "apps/common/sequence.h"
@@ -10,8 +11,6 @@
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
 #include "engine/description/scene_json.h"
-#include "engine/octree/volume_limits.h"
-#include "engine/scene/orbit.h"
 
 namespace freevoxels {
 
@@ -19,29 +18,11 @@ namespace {
 
 using Json = nlohmann::json;
 
-/// The sections of the options of a frame, or of a file as well; of the device only where they choose it.
-KeywordOptions::Sections sections(bool ofFile, bool choosesDevice) {
-  std::vector<std::string> names{"classification", "emission", "camera", "light", "method", "scene"};
-  if (ofFile) names.emplace_back("input");
-  if (choosesDevice) names.emplace_back("device");
-  return names;
-}
-
 /// Fails where a turn is asked for. The key in a section belongs to a whole scene, of which a frame is drawn.
 void refuseTurn(const Json& keywords) {
   if (keywords.contains("frames"))
     fail(ErrorKind::Usage, "{} is of turntables, and this is one frame: draw a turntable, or a frame for each {}", Parameter("frames"),
          Parameter("orbit"));
-}
-
-/// The camera at another place around its look-at point, at the same distance.
-Camera movedTo(glm::dvec2 orbit, glm::dvec3 up, Camera camera) {
-  const double distance = glm::length(camera.position - camera.lookAt);
-  camera.up = up;
-  const Camera there = framingCamera({.points = {glm::dvec3(-1.0), glm::dvec3(1.0)}}, orbit.x, orbit.y, 1.0, camera);
-  camera.up = there.up;
-  camera.position = camera.lookAt + distance * glm::normalize(there.position - there.lookAt);
-  return camera;
 }
 
 /// Fails where colours are no numbers, of which no picture can be made.
@@ -59,14 +40,13 @@ std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Js
   refuseTurn(keywords);
   Json named = keywords;
   if (!file.empty()) named["volume"] = file;
-  const KeywordOptions options({named}, sections(true, !context));
+  const KeywordOptions options({named}, KeywordOptions::sections(true, !context));
   if (options.scene.input.volume.empty())
     fail(ErrorKind::Usage, "there is no volume to open: name a file or procedural:NAME, or give a scene with a {}", Parameter("volume"));
   options.scene.check();
   if (const std::string& volume = options.scene.input.volume; isPattern(volume))
-    fail(ErrorKind::Usage, "'{}' is a sequence, which the command line alone draws: open one of its files", volume);
-  if (auto baked = options.scene.input.baked()) return std::make_shared<const SharedVolume>(std::move(baked));
-  return std::make_shared<const SharedVolume>(options.scene.readVolume(kMaxNumberedVoxels, 0, progress));
+    fail(ErrorKind::Usage, "'{}' is a sequence of volumes: draw it as a Sequence, or open one of its files", volume);
+  return sharedVolume(options.scene, false, false, progress);
 }
 
 void saveImage(const std::string& file, const Image& image, const Json& keywords) {
@@ -97,31 +77,23 @@ void saveScene(const std::filesystem::path& file, const Json& keywords) {
   writeScene(file, options.scene);
 }
 
-/// The turn of a frame on the device, for as long as this object exists.
-class SceneRenderer::Turn {
- public:
-  explicit Turn(SceneRenderer& renderer) : renderer_(renderer), lock_(renderer.context_->turns) {
-    if (renderer.isDrawing_)
-      fail(ErrorKind::Usage,
-           "a renderer cannot draw a frame in the progress function of another of its frames: use a second renderer, "
-           "or draw it afterwards");
-    renderer_.isDrawing_ = true;
-  }
-  ~Turn() { renderer_.isDrawing_ = false; }
-  Turn(const Turn&) = delete;
-  Turn& operator=(const Turn&) = delete;
+std::unique_ptr<const KeywordOptions> readFrame(const Json& more, const Json& own, bool choosesDevice) {
+  for (const Json* given : {&more, &own}) refuseTurn(*given);
+  auto options = std::make_unique<KeywordOptions>(std::vector{more, own}, KeywordOptions::sections(false, choosesDevice));
+  options->scene.check();
+  return options;
+}
 
- private:
-  SceneRenderer& renderer_;
-  const std::lock_guard<DrawingTurns> lock_;
-};
-
-SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json keywords, std::shared_ptr<DeviceContext> context)
+SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json keywords, std::shared_ptr<DeviceContext> context,
+                             std::shared_ptr<const Scene> film)
     : volume_(std::move(volume)),
       keywords_(std::move(keywords)),
+      film_(std::move(film)),
       choosesDevice_(!context),
       context_(context ? std::move(context) : sharedContext(read(Json::object())->device)) {
-  ownCamera_ = read(Json::object())->scene.camera;
+  const SceneDescription own = read(Json::object())->scene;
+  ownCamera_ = own.camera;
+  ownLighting_ = own.lighting;
 }
 
 SceneRenderer::~SceneRenderer() {
@@ -130,11 +102,13 @@ SceneRenderer::~SceneRenderer() {
   (void)new std::shared_ptr<DeviceContext>(context_);
 }
 
-std::unique_ptr<const KeywordOptions> SceneRenderer::read(const Json& more) const {
-  for (const Json* given : {&more, &keywords_}) refuseTurn(*given);
-  auto options = std::make_unique<KeywordOptions>(std::vector{more, keywords_}, sections(false, choosesDevice_));
-  options->scene.check();
-  return options;
+/// Resolves scene_ as the film is seen, but for what the frame gives itself.
+void SceneRenderer::resolveLikeFilm(const SceneDescription& description) {
+  Scene seen = *film_;
+  if (description.lighting != ownLighting_)
+    seen.lighting = description.lighting.resolve(*film_->volume, film_->classification, film_->camera);
+  seen.camera = cameraInFilm(*film_, ownCamera_, description.camera);
+  scene_ = description.resolveLike(seen, scene_.volume);
 }
 
 /// Resolves camera and light of scene_.
@@ -172,15 +146,23 @@ FrameSettings SceneRenderer::prepare(const KeywordOptions& options, std::optiona
     scene_.volume = known(source_);
     need_ = need;
   }
-  const std::string classification = textOf(options.scene, {"classification", "emission"});
-  if (!renderer_ || classification != classification_) {
-    scene_.classification = options.scene.resolveClassification(*scene_.volume);
-    classification_ = classification;
+  if (film_) {
+    resolveLikeFilm(options.scene);
+  } else {
+    classify(options.scene);
+    resolveView(options.scene, step);
   }
-  resolveView(options.scene, step);
   settings.lighting = scene_.lighting;
   makeRenderer(options, progress);
   return settings;
+}
+
+/// Resolves the classification of scene_ unless it is that of the frame before.
+void SceneRenderer::classify(const SceneDescription& description) {
+  const std::string classification = textOf(description, {"classification", "emission"});
+  if (renderer_ && classification == classification_) return;
+  scene_.classification = description.resolveClassification(*scene_.volume);
+  classification_ = classification;
 }
 
 void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& progress) {
@@ -195,12 +177,9 @@ void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& 
 void SceneRenderer::complete(glm::ivec2 size) {
   context_->checkValidation();
   std::vector<StageTime> times = std::exchange(isRendererNew_, false) ? renderer_->timings() : renderer_->frameTimings();
-  CameraDescription camera;
-  camera.look(scene_.camera);
-  camera.size = size;
   const std::lock_guard lock(lastFrameMutex_);
   timings_ = std::move(times);
-  camera_ = camera;
+  camera_ = keywordsOf(scene_.camera, size);
 }
 
 template <typename Work>
@@ -208,7 +187,7 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
                          const Work& work) {
   refuseInsideValidationLog();
   context_->refuseAfterFork();
-  const Turn turn(*this);
+  const FrameTurn turn(context_->turns, isDrawing_);
   const Progress whole = wholeProgress(progress);
   const FrameSettings settings = prepare(options, step, depth, whole);
   auto drawn = std::invoke(work, *renderer_, scene_.camera, settings, whole);
@@ -244,15 +223,9 @@ std::vector<StageTime> SceneRenderer::timings() const {
   return timings_;
 }
 
-nlohmann::json SceneRenderer::camera() const {
+Json SceneRenderer::camera() const {
   const std::lock_guard lock(lastFrameMutex_);
-  if (!camera_) return Json::object();
-  const auto triple = [](const glm::dvec3& v) { return Json{v.x, v.y, v.z}; };
-  Json keywords{{"camera-position", triple(*camera_->position)}, {"look-at", triple(*camera_->lookAt)}, {"up", triple(*camera_->up)}};
-  if (camera_->orthographicHeight) keywords["orthographic"] = *camera_->orthographicHeight;
-  if (camera_->verticalFov) keywords["fov"] = *camera_->verticalFov;
-  keywords["size"] = {camera_->size.x, camera_->size.y};
-  return keywords;
+  return camera_;
 }
 
 }  // namespace freevoxels

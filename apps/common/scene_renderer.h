@@ -31,6 +31,9 @@ nlohmann::json loadScene(const std::filesystem::path& file);
 /// Writes keywords as a scene file, with names of files relative to its folder.
 void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
 
+/// Reads the options of one frame: `own`, overridden by `more`. `choosesDevice`: whether they choose the device. Fails for a turn.
+std::unique_ptr<const KeywordOptions> readFrame(const nlohmann::json& more, const nlohmann::json& own, bool choosesDevice);
+
 /// A frame of a full turn around the volume.
 struct TurnStep {
   int frame = 0, frames = 1;  ///< 0 <= frame < frames
@@ -44,13 +47,15 @@ struct TurnStep {
 class SceneRenderer {
  public:
   /// `keywords` (KeywordOptions) hold for every frame. The table is made for the first frame that needs it. If `context` is
-  /// null, the keywords choose the device, which is opened here.
-  SceneRenderer(std::shared_ptr<const SharedVolume> volume, nlohmann::json keywords, std::shared_ptr<DeviceContext> context = nullptr);
+  /// null, the keywords choose the device, which is opened here. `film`: how all frames of a film are seen, of which the volume is one;
+  /// its classification, camera and lights are in place of those that the keywords leave open.
+  SceneRenderer(std::shared_ptr<const SharedVolume> volume, nlohmann::json keywords, std::shared_ptr<DeviceContext> context = nullptr,
+                std::shared_ptr<const Scene> film = nullptr);
   /// In a process forked from the renderer's own, what the renderer has on the device is given up, as it cannot be freed there.
   ~SceneRenderer();
 
   /// Reads the options of a frame: the renderer's keywords, overridden by `more`.
-  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const;
+  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const { return readFrame(more, keywords_, choosesDevice_); }
 
   /// Draws a frame, with channels. What frames share is made again only if the options change it.
   Image render(const KeywordOptions& options, const Aovs& channels, const Progress& progress);
@@ -67,21 +72,24 @@ class SceneRenderer {
   const std::shared_ptr<DeviceContext>& context() const { return context_; }
 
  private:
-  class Turn;
   Image drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels, const Progress& progress);
   /// Prepares a frame and returns what `work`, a drawing function of Renderer, makes of it.
   template <typename Work>
   auto draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress, const Work& work);
   FrameSettings prepare(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress);
+  void classify(const SceneDescription& description);
+  void resolveLikeFilm(const SceneDescription& description);
   void resolveView(const SceneDescription& description, std::optional<TurnStep> step);
   void makeRenderer(const KeywordOptions& options, const Progress& progress);
   void complete(glm::ivec2 size);
 
   const std::shared_ptr<const SharedVolume> volume_;
   const nlohmann::json keywords_;
+  const std::shared_ptr<const Scene> film_;  ///< null where the volume is seen by itself
   const bool choosesDevice_;  ///< whether the keywords choose the device
   const std::shared_ptr<DeviceContext> context_;
-  CameraDescription ownCamera_;  ///< of the renderer's own keywords
+  CameraDescription ownCamera_;  ///< of the renderer's own keywords, as is the light
+  LightingDescription ownLighting_;
 
   // While context_->turns is held:
   bool isDrawing_ = false;
@@ -95,7 +103,7 @@ class SceneRenderer {
 
   mutable std::mutex lastFrameMutex_;  ///< guards the members below, of the last complete frame
   std::vector<StageTime> timings_;
-  std::optional<CameraDescription> camera_;
+  nlohmann::json camera_ = nlohmann::json::object();
 };
 
 }  // namespace freevoxels

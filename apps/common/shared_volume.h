@@ -13,22 +13,28 @@ namespace freevoxels {
 class SharedVolume {
  public:
   explicit SharedVolume(Volume volume);
-  explicit SharedVolume(std::shared_ptr<const fvx::FvxFile> file);
+  /// `isRead`: whether levels are read as a whole, however they are classified.
+  explicit SharedVolume(std::shared_ptr<const fvx::FvxFile> file, bool isRead = false);
 
   /// The volume; of a file its finest level, without the values.
   const Volume& describe() const { return *description_; }
 
   /// What a frame of the scene needs, or the frames of a turn, as on the command line.
-  BakedNeed needOf(const SceneDescription& scene, int frames) const { return file_ ? scene.needOf(*file_, frames) : BakedNeed{}; }
+  BakedNeed needOf(const SceneDescription& scene, int frames) const;
   /// `progress` may abandon it. Fails as readBaked does.
   std::shared_ptr<const VolumeSource> source(const BakedNeed& need, const Progress& progress) const;
 
  private:
+  const bool isRead_ = false;
   const std::shared_ptr<const fvx::FvxFile> file_;  ///< null where the volume is of no baked file
   const std::shared_ptr<const Volume> description_;
   mutable std::mutex mutex_;  ///< guards the members below
   mutable std::shared_ptr<const VolumeSource> inMemory_;
   mutable int level_ = 0;  ///< of `inMemory_`
 };
+
+/// Opens the volume of a scene: of a film of several, whose baked files are read as a whole, or as a frame of it that may lack grids.
+/// Fails as readVolume does, and for a baked file as FvxFile does. `progress` may abandon it.
+std::shared_ptr<const SharedVolume> sharedVolume(const SceneDescription& scene, bool isOfFilm, bool mayLackGrids, const Progress& progress);
 
 }  // namespace freevoxels

@@ -2,6 +2,7 @@
 // One fraction of a whole frame, of the fractions of its parts.
 
 #include <algorithm>
+#include <chrono>
 #include <memory>
 #include <string_view>
 
@@ -28,6 +29,23 @@ inline Progress wholeProgress(const Progress& progress) {
   if (!progress) return {};
   return [progress, fraction = std::make_shared<WholeFraction>()](std::string_view stage, double ofPart) {
     progress(stage, fraction->next(ofPart));
+  };
+}
+
+/// A progress function for a part that begins where `begun` of the whole is done and ends after `share` of it. An empty function stays empty.
+inline Progress partOf(const Progress& progress, double begun, double share) {
+  if (!progress) return {};
+  return [progress, begun, share](std::string_view stage, double fraction) { progress(stage, begun + share * fraction); };
+}
+
+/// A progress function that may be called often, and passes on a call in 50 ms at most. An empty function stays empty.
+inline Progress pacedProgress(const Progress& progress) {
+  if (!progress) return {};
+  using Clock = std::chrono::steady_clock;
+  return [progress, next = std::make_shared<Clock::time_point>()](std::string_view stage, double fraction) {
+    if (Clock::now() < *next) return;
+    progress(stage, fraction);
+    *next = Clock::now() + std::chrono::milliseconds(50);
   };
 }
 

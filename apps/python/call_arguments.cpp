@@ -6,6 +6,7 @@
 namespace freevoxels {
 
 namespace py = pybind11;
+using Json = nlohmann::json;
 
 void refuseMore(const py::args& more, const char* function, const char* first) {
   if (!more.empty()) fail(ErrorKind::Usage, "{} takes {} without a name, and options by name only: density_scale=40", function, first);
@@ -31,6 +32,42 @@ std::filesystem::path pathOf(const py::object& file) {
   if (!py::isinstance<py::str>(file) && !py::isinstance<py::bytes>(file) && !py::hasattr(file, "__fspath__"))
     fail(ErrorKind::Usage, "{} takes the name of a file, not {}", Parameter("file"), typeName(file));
   return jsonOf(py::isinstance<py::bytes>(file) ? py::module_::import("os").attr("fsdecode")(file) : file, "file").get<std::string>();
+}
+
+py::object Wanted::resultOf(Image& image) const {
+  const py::object pixels = pixelsOf(image);
+  if (byName) return py::make_tuple(pixels, channelsOf(image));
+  return channels.depth ? py::make_tuple(pixels, depthOf(image)) : pixels;
+}
+
+Wanted wantedOf(const py::object& depth, const py::object& aov) {
+  Wanted wanted{.channels = {.depth = flagOf(depth, "depth")}};
+  if (aov.is_none()) return wanted;
+  if (wanted.channels.depth)
+    fail(ErrorKind::Usage, "{} and {} exclude each other: name depth among the channels", Parameter("depth"), Parameter("aov"));
+  const Json names = jsonOf(aov, "aov");
+  std::string text;
+  for (const Json& name : names.is_array() ? names : Json::array({names})) {
+    if (!name.is_string()) fail(ErrorKind::Usage, "{} takes names of channels as text, not {}", Parameter("aov"), typeName(aov));
+    text += (text.empty() ? "" : ",") + name.get<std::string>();
+  }
+  return {.channels = readAovs(fmt::format("{}", Parameter("aov")), text), .byName = true};
+}
+
+py::object cameraOf(const Json& camera) {
+  if (camera.empty()) return py::none();
+  py::dict options;
+  for (const auto& [name, value] : camera.items()) {
+    const py::object numbers = pythonOf(value);
+    options[py::str(keywordOf(name))] = value.is_array() ? py::tuple(numbers) : numbers;
+  }
+  return options;
+}
+
+std::vector<std::pair<std::string, double>> timingsOf(const std::vector<StageTime>& times) {
+  std::vector<std::pair<std::string, double>> pairs;
+  for (const StageTime& time : times) pairs.emplace_back(time.name, time.milliseconds);
+  return pairs;
 }
 
 }  // namespace freevoxels

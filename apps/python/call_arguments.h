@@ -1,10 +1,17 @@
 #pragma once
-// The arguments of the module's functions, some of which may be given without a name. All functions must be called with the GIL held.
+// The arguments of the module's functions, some of which may be given without a name, and what they return. All functions must be called with the GIL held.
 
 #include <pybind11/pybind11.h>
 
 #include <filesystem>
+#include <nlohmann/json.hpp>
+#include <string>
 #include <utility>
+#include <vector>
+
+#include "engine/core/stages.h"
+#include "engine/description/aov.h"
+#include "engine/image/image.h"
 
 namespace freevoxels {
 
@@ -21,5 +28,23 @@ bool flagOf(const pybind11::object& value, const char* name);
 
 /// The name of a file: text, bytes or a path. Fails with ErrorKind::Usage for others.
 std::filesystem::path pathOf(const pybind11::object& file);
+
+/// What a drawing function returns beside the colours.
+struct Wanted {
+  Aovs channels;
+  bool byName = false;  ///< whether channels are returned in a dictionary
+
+  /// Takes over the image's memory.
+  pybind11::object resultOf(Image& image) const;
+};
+
+/// Reads the arguments `depth` and `aov`. Fails with ErrorKind::Usage where both are given.
+Wanted wantedOf(const pybind11::object& depth, const pybind11::object& aov);
+
+/// The keywords that SceneRenderer::camera() has, None where there are none.
+pybind11::object cameraOf(const nlohmann::json& camera);
+
+/// Pairs of names and milliseconds.
+std::vector<std::pair<std::string, double>> timingsOf(const std::vector<StageTime>& times);
 
 }  // namespace freevoxels

@@ -11,6 +11,7 @@
 #include "apps/python/call_arguments.h"
 #include "apps/python/numpy_array.h"
 #include "apps/python/python_renderer.h"
+#include "apps/python/python_sequence.h"
 #include "apps/python/python_values.h"
 #include "apps/python/python_volume.h"
 
@@ -71,6 +72,7 @@ PYBIND11_MODULE(_core, module) {
   addExceptions(module);
   addVolume(module);
   addRenderer(module);
+  addSequence(module);
   module.def("load_scene", &loadSceneFile, "file"_a,
              "load_scene(file)\n--\n\n"
              "Reads a scene file, which the command line, the viewer or save_scene wrote: a dictionary of sections, which are keywords\n"

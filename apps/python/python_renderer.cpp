@@ -47,32 +47,6 @@ std::unique_ptr<SceneRenderer> newRenderer(const py::args& arguments, const py::
   return makeRenderer(volume.cast<const PythonVolume&>(), keywords);
 }
 
-/// What a drawing function returns beside the colours.
-struct Wanted {
-  Aovs channels;
-  bool byName = false;  ///< whether channels are returned in a dictionary
-
-  py::object resultOf(Image& image) const {
-    const py::object pixels = pixelsOf(image);
-    if (byName) return py::make_tuple(pixels, channelsOf(image));
-    return channels.depth ? py::make_tuple(pixels, depthOf(image)) : pixels;
-  }
-};
-
-Wanted wantedOf(const py::object& depth, const py::object& aov) {
-  Wanted wanted{.channels = {.depth = flagOf(depth, "depth")}};
-  if (aov.is_none()) return wanted;
-  if (wanted.channels.depth)
-    fail(ErrorKind::Usage, "{} and {} exclude each other: name depth among the channels", Parameter("depth"), Parameter("aov"));
-  const Json names = jsonOf(aov, "aov");
-  std::string text;
-  for (const Json& name : names.is_array() ? names : Json::array({names})) {
-    if (!name.is_string()) fail(ErrorKind::Usage, "{} takes names of channels as text, not {}", Parameter("aov"), typeName(aov));
-    text += (text.empty() ? "" : ",") + name.get<std::string>();
-  }
-  return {.channels = readAovs(fmt::format("{}", Parameter("aov")), text), .byName = true};
-}
-
 py::object render(SceneRenderer& renderer, const py::args& more, const py::object& progress, const py::object& depth, const py::object& aov,
                   const py::kwargs& keywords) {
   refuseMore(more, "render()", "nothing");
@@ -127,25 +101,6 @@ Turntable turntableOf(const py::object& renderer, const py::object& count, const
           .options = renderer.cast<SceneRenderer&>().read(jsonOf(keywords)),
           .frames = int(frames),
           .wanted = wantedOf(depth, aov)};
-}
-
-/// Options that give the camera of the last frame.
-py::object cameraOf(const SceneRenderer& renderer) {
-  const Json camera = renderer.camera();
-  if (camera.empty()) return py::none();
-  py::dict options;
-  for (const auto& [name, value] : camera.items()) {
-    const py::object numbers = pythonOf(value);
-    options[py::str(keywordOf(name))] = value.is_array() ? py::tuple(numbers) : numbers;
-  }
-  return options;
-}
-
-std::vector<std::pair<std::string, double>> timingsOf(const SceneRenderer& renderer) {
-  std::vector<std::pair<std::string, double>> pairs;
-  const py::gil_scoped_release withoutGil;
-  for (const StageTime& time : renderer.timings()) pairs.emplace_back(time.name, time.milliseconds);
-  return pairs;
 }
 
 /// Whether a keyword of render() is of the file that is opened, instead of the frame.
@@ -206,8 +161,8 @@ void addRenderer(py::module_& module) {
            "(image, dictionary of arrays), which save() writes. progress(stage, fraction) is called about every 50 ms of work,\n"
            "and at the end, with the fraction of the frame that is done, which never decreases and ends at 1;\n"
            "an exception that it raises abandons the frame. It may draw with other renderers. Options given here hold for this frame.")
-      .def_property_readonly("timings", &timingsOf, "List of (stage, milliseconds): the stages that the last complete frame ran.")
-      .def_property_readonly("camera", &cameraOf,
+      .def_property_readonly("timings", [](const SceneRenderer& r) { return timingsOf(r.timings()); }, "List of (stage, milliseconds): the stages that the last complete frame ran.")
+      .def_property_readonly("camera", [](const SceneRenderer& r) { return cameraOf(r.camera()); },
                              "The camera of the last complete frame as keywords of render(): camera_position, look_at and up in world\n"
                              "units, fov in degrees or orthographic in world units, and size in pixels. None before the first frame.")
       .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; },

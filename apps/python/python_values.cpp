@@ -351,9 +351,13 @@ void addExceptions(py::module_& module) {
   });
 }
 
+void tellPython(const std::string& sentence, bool isWarning) {
+  spdlog::log(isWarning ? spdlog::level::warn : spdlog::level::info, "{}", withKeywords(sentence));
+}
+
 void warnInPython(const Volume& volume) {
-  for (const std::string& warning : warningsOf(volume, false)) spdlog::warn("{}", withKeywords(warning));
-  if (const std::string remarks = remarksOf(volume); !remarks.empty()) spdlog::info("{}", withKeywords(remarks));
+  for (const std::string& warning : warningsOf(volume, false)) tellPython(warning, true);
+  if (const std::string remarks = remarksOf(volume); !remarks.empty()) tellPython(remarks, false);
 }
 
 void logToPython() {

@@ -53,6 +53,9 @@ void addExceptions(pybind11::module_& module);
 /// Sends the warnings of a volume to Python's logger "freevoxels".
 void warnInPython(const Volume& volume);
 
+/// Sends a sentence with parameters there, as a warning or a remark. Any thread may call it, with the GIL or without.
+void tellPython(const std::string& sentence, bool isWarning);
+
 /// Sends messages to Python's logger "freevoxels".
 void logToPython();
 

@@ -3,6 +3,7 @@ returned: channels of an .exr, and the bytes of a .png. A case that is refused r
 
 import json
 import os
+import pathlib
 import re
 import subprocess
 
@@ -83,23 +84,56 @@ class Module(Files):
     def keywords(options):
         return {name.replace("-", "_"): value for name, value in options.items()}
 
+    def save(self, case, output, file, image, depth):
+        for form in case.get("forms", FORMS):
+            of_form = {name: value for name, value in output.items() if name not in NOT_OF_FORM[form]}
+            freevoxels.save(f"{file}.{form}", image, depth=depth, **of_form, **({"float": True} if form == "exr" else {}))
+
+    def draw_one(self, case, folder, options, output):
+        depth = "depth" in output.get("aov", "")
+        image = freevoxels.render(self.path(case["volume"]), depth=depth, **options)
+        self.save(case, output, folder / "a", *(image if depth else (image, None)))
+        return {"a": image if depth else (image, None)}
+
+    def draw_turn(self, case, folder, options, output):
+        depth = "depth" in output.get("aov", "")
+        of_file = {name: options.pop(name) for name in ("resolution", "grid") if name in options}
+        volume = freevoxels.Volume.open(self.path(case["volume"]), **of_file)
+        frames = options.pop("frames")
+        images = {}
+        for number, image in enumerate(freevoxels.Renderer(volume, **options).turntable(frames, depth=depth)):
+            images[case["names"].replace("#", str(number))] = image if depth else (image, None)
+            self.save(case, output, folder / case["names"].replace("#", str(number)), *(image if depth else (image, None)))
+        return images
+
+    def draw_sequence(self, case, folder, options, output):
+        volume = self.path(case["volume"])
+        files = [folder / f"{case['names']}.{form}" for form in case.get("forms", FORMS)]
+        written = freevoxels.render_sequence(volume, files, **options, **output, float=True)
+        assert sorted(written) == sorted(str(file) for file in folder.iterdir())
+        sequence = freevoxels.Sequence(volume, **options)
+        images = {}
+        for place in reversed(range(len(sequence))):  # in another order
+            image, depth = sequence.render(place, depth=True)
+            images[pathlib.Path(written[2 * place]).stem] = image, depth if "depth" in output.get("aov", "") else None
+        return images
+
     def draw(self, case, folder):
         options, output = self.keywords(self.options(case)), self.keywords(case["output"])
-        depth = "depth" in output.get("aov", "")
+        is_sequence = "#" in case["volume"] or "%" in case["volume"]
+        drawn_so = self.draw_turn if case.get("command") == "turntable" else self.draw_sequence if is_sequence else self.draw_one
         try:
-            image = freevoxels.render(self.path(case["volume"]), depth=depth, **options)
-            image, distance = image if depth else (image, None)
-            for form in case.get("forms", FORMS):
-                of_form = {name: value for name, value in output.items() if name not in NOT_OF_FORM[form]}
-                freevoxels.save(folder / f"a.{form}", image, depth=distance, **of_form, **({"float": True} if form == "exr" else {}))
+            images = drawn_so(case, folder, options, output)
         except freevoxels.Error as error:
             raise Refused(str(error)) from error
         files = drawn(folder)
-        if "a.exr" in files and "crop" not in output:
-            stored = files["a.exr"]
+        for name, (image, depth) in images.items():
+            if f"{name}.exr" not in files or "crop" in output:
+                continue
+            stored = files[f"{name}.exr"]
             np.testing.assert_array_equal(np.stack([stored[channel] for channel in "RGBA"], axis=-1), image)
-            if depth:
-                np.testing.assert_array_equal(stored["Z"], distance)
+            if depth is not None:
+                np.testing.assert_array_equal(stored["Z"], depth)
         return files
 
     @staticmethod

@@ -5,7 +5,8 @@ takes the text of the command line (size="640x420"). An object of a section's na
 section: camera={"orbit": (35, 25)}.
 """
 
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Sequence as Sequence_
 from os import PathLike
 from typing import Any, Literal, TypedDict, overload
 
@@ -17,7 +18,7 @@ __version__: str
 
 _Path = str | PathLike[str]
 _Number = float  # in classes with a keyword `float`
-_Numbers = Sequence[float] | NDArray[Any] | str
+_Numbers = Sequence_[float] | NDArray[Any] | str
 _Pair = _Numbers
 _Triple = _Numbers  # (x, y, z), or linear (red, green, blue)
 _Section = Mapping[str, Any]
@@ -44,7 +45,7 @@ class _Camera(TypedDict, total=False):
     up: _Triple
     fov: float
     orthographic: float
-    size: Sequence[int] | NDArray[Any] | str
+    size: Sequence_[int] | NDArray[Any] | str
     frames: int
     camera: _Section
 
@@ -62,8 +63,8 @@ class _Emission(TypedDict, total=False):
     temperature_offset: float
 
 class _Light(TypedDict, total=False):
-    light: Mapping[str, Any] | str | Sequence[Mapping[str, Any] | str]  # one light, several of them, or the section
-    lights: Sequence[Mapping[str, Any] | str]
+    light: Mapping[str, Any] | str | Sequence_[Mapping[str, Any] | str]  # one light, several of them, or the section
+    lights: Sequence_[Mapping[str, Any] | str]
     unlit: bool
     ambient: float | _Triple
     environment: _Path
@@ -99,7 +100,7 @@ class _Output(TypedDict, total=False):
     float: bool
     png_bits: Literal[8, 16]
     aov: str | Mapping[str, ArrayLike]
-    crop: Sequence[int] | NDArray[Any] | str
+    crop: Sequence_[int] | NDArray[Any] | str
     output: _Section
 
 class _Device(TypedDict, total=False):
@@ -118,13 +119,16 @@ class _RendererOptions(_FrameOptions, total=False):
 class _OpenOptions(_Input, _FrameOptions, total=False): ...
 
 class _OnceOptions(_Part, _FrameOptions, total=False):
-    spacing: float | Sequence[float] | NDArray[Any]
-    origin: Sequence[float] | NDArray[Any]
+    spacing: float | Sequence_[float] | NDArray[Any]
+    origin: Sequence_[float] | NDArray[Any]
     transform: ArrayLike | None
     no_data: float | Literal["none"] | None
     temperature: ArrayLike | None
 
 class _SceneOptions(_Input, _Camera, _Classification, _Emission, _Light, _Method, _Output, _SceneFile, total=False): ...
+
+class _SequenceOptions(_Input, _FrameOptions, total=False): ...
+class _FilmOptions(_Input, _FrameOptions, _Output, total=False): ...
 
 class Error(Exception):
     parameters: tuple[str, ...]  # the keywords that the sentence names
@@ -140,8 +144,8 @@ class Volume:
         self,
         array: ArrayLike,
         *,
-        spacing: float | Sequence[float] | NDArray[Any] = ...,
-        origin: Sequence[float] | NDArray[Any] = ...,
+        spacing: float | Sequence_[float] | NDArray[Any] = ...,
+        origin: Sequence_[float] | NDArray[Any] = ...,
         transform: ArrayLike | None = ...,
         no_data: float | Literal["none"] | None = ...,
         temperature: ArrayLike | None = ...,
@@ -174,7 +178,7 @@ class Renderer:
     ) -> tuple[_Image, _Depth]: ...
     @overload
     def render(
-        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: str | Sequence[str], **kwargs: Unpack[_RendererOptions]
+        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: str | Sequence_[str], **kwargs: Unpack[_RendererOptions]
     ) -> tuple[_Image, _Channels]: ...
     @overload
     def turntable(
@@ -197,9 +201,51 @@ class Renderer:
         *,
         progress: _Progress | None = ...,
         depth: Literal[False] = ...,
-        aov: str | Sequence[str],
+        aov: str | Sequence_[str],
         **kwargs: Unpack[_RendererOptions],
     ) -> Iterator[tuple[_Image, _Channels]]: ...
+    @property
+    def camera(self) -> dict[str, Any] | None: ...
+    @property
+    def timings(self) -> list[tuple[str, float]]: ...
+    @property
+    def device(self) -> str: ...
+
+_Frames = range | int | str | None  # "A-B:STEP"
+
+class Sequence:
+    def __init__(
+        self,
+        volume: _Path | Sequence_[_Path] | None = ...,
+        *,
+        frames: _Frames = ...,
+        fixed_view: bool | None = ...,
+        **kwargs: Unpack[_SequenceOptions],
+    ) -> None: ...
+    def __len__(self) -> int: ...
+    def __iter__(self) -> Iterator[_Image]: ...
+    @overload
+    def render(
+        self, frame: int, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: None = ..., **kwargs: Unpack[_RendererOptions]
+    ) -> _Image: ...
+    @overload
+    def render(
+        self, frame: int, *, progress: _Progress | None = ..., depth: Literal[True], aov: None = ..., **kwargs: Unpack[_RendererOptions]
+    ) -> tuple[_Image, _Depth]: ...
+    @overload
+    def render(
+        self,
+        frame: int,
+        *,
+        progress: _Progress | None = ...,
+        depth: Literal[False] = ...,
+        aov: str | Sequence_[str],
+        **kwargs: Unpack[_RendererOptions],
+    ) -> tuple[_Image, _Channels]: ...
+    @property
+    def files(self) -> list[str]: ...
+    @property
+    def numbers(self) -> list[float]: ...
     @property
     def camera(self) -> dict[str, Any] | None: ...
     @property
@@ -231,9 +277,19 @@ def render(
     *,
     progress: _Progress | None = ...,
     depth: Literal[False] = ...,
-    aov: str | Sequence[str],
+    aov: str | Sequence_[str],
     **kwargs: Unpack[_OnceOptions],
 ) -> tuple[_Image, _Channels]: ...
+def render_sequence(
+    volume: _Path | Sequence_[_Path] | None,
+    images: _Path | Sequence_[_Path],
+    *,
+    frames: _Frames = ...,
+    fixed_view: bool | None = ...,
+    skip_existing: bool = ...,
+    progress: _Progress | None = ...,
+    **kwargs: Unpack[_FilmOptions],
+) -> list[str]: ...
 def load_scene(file: _Path) -> dict[str, Any]: ...
 def save_scene(file: _Path, **kwargs: Unpack[_SceneOptions]) -> None: ...
 def save(file: _Path, image: ArrayLike, *, depth: ArrayLike | None = ..., **kwargs: Unpack[_Output]) -> None: ...

@@ -94,6 +94,7 @@ class FREEVOXELS_API Context {
   struct State;
   friend class Volume;
   friend class Renderer;
+  friend class Sequence;
   friend FREEVOXELS_API Context adopt(const AdoptedDevice& device, int memoryLimit);
   explicit Context(std::shared_ptr<State> state) : state_(std::move(state)) {}
   std::shared_ptr<State> state_;
@@ -200,6 +201,52 @@ class FREEVOXELS_API Renderer {
   std::vector<std::pair<std::string, double>> timings() const;
   /// The name of the Vulkan device.
   std::string device() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// The frames of a film: volumes whose file names differ in a number. They are seen as `freevoxels render 'smoke_####.vdb'` shows them: what
+/// the scene leaves open of camera, lights and scales is chosen for the film as a whole, for which the first image reads up to 12 frames.
+/// The scene has the keys of Volume::open and of Renderer, and
+///   "frames": "A-B:STEP", "A-B", "A-" or a number: which numbers of the files are drawn; else all;
+///   "fixed-view": true: the view and the scales of the first frame that holds anything; false: each frame is seen by itself.
+/// Two volumes are never in memory at once. A moved-from Sequence may only be assigned to or destroyed.
+class FREEVOXELS_API Sequence {
+ public:
+  /// `names` are patterns, in which a run of # (or %04d) stands for the number, and files; if there are none, the scene's key "volume".
+  /// Fails with ErrorKind::Input where a pattern has no file. No file is read yet.
+  Sequence(const Context& context, const std::vector<std::string>& names, std::string_view scene = "{}");
+  /// On the device of the keys "device" and "memory-limit".
+  explicit Sequence(const std::vector<std::string>& names, std::string_view scene = "{}");
+  ~Sequence();
+  Sequence(Sequence&&) noexcept;
+  Sequence& operator=(Sequence&&) noexcept;
+
+  std::size_t size() const;                 ///< how many frames there are, at least 1
+  std::vector<std::string> files() const;   ///< the file, or procedural:NAME, of each frame, in the order of the numbers
+  std::vector<double> numbers() const;      ///< of each frame: that in the name of its file, or the place in `names`
+
+  /// Draws a frame, from 0 to size() - 1, and waits for it. `scene` as for Renderer::render(): its "orbit" moves the eye about the film's
+  /// look-at point. The frame drawn last stays in memory. In a film of several, one that holds nothing is transparent everywhere; a file
+  /// that cannot be read fails with ErrorKind::Input, and other frames may be drawn afterwards.
+  Image render(std::size_t frame, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
+  /// Draws all frames and writes each, when it is complete, into one file for each of `images`, in whose name a run of # stands for the
+  /// number. `scene` is as for freevoxels::v1::save(), and "aov" adds channels to an .exr. `skipExisting`: frames whose files exist are left
+  /// as they are. Files that cannot be read are left out; ErrorKind::Input is thrown at the end. Returns the names of the images. The
+  /// fraction that `progress` gets is that of all frames.
+  std::vector<std::string> save(const std::vector<std::string>& images, std::string_view scene = "{}", bool skipExisting = false,
+                                const Progress& progress = {});
+
+  /// As those of Renderer, of the last complete frame.
+  std::string camera() const;
+  std::vector<std::pair<std::string, double>> timings() const;
+  std::string device() const;
+  /// What the user should know, in sentences, each once: numbers without a file, and what is remarkable about the files read so far.
+  std::vector<std::string> warnings() const;
+  /// What was chosen for the film and assumed of the files read so far, each sentence once.
+  std::vector<std::string> remarks() const;
 
  private:
   struct State;
