@@ -3,7 +3,7 @@
 #include <functional>
 #include <utility>
 
-#include "apps/common/frame_camera.h"
+#include "apps/common/frame_view.h"
 #include "apps/common/output_options.h"
 #include "apps/common/program.h"
 #include "apps/common/sequence.h"
@@ -91,9 +91,7 @@ SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json ke
       film_(std::move(film)),
       choosesDevice_(!context),
       context_(context ? std::move(context) : sharedContext(read(Json::object())->device)) {
-  const SceneDescription own = read(Json::object())->scene;
-  ownCamera_ = own.camera;
-  ownLighting_ = own.lighting;
+  own_ = read(Json::object())->scene;
 }
 
 SceneRenderer::~SceneRenderer() {
@@ -104,11 +102,7 @@ SceneRenderer::~SceneRenderer() {
 
 /// Resolves scene_ as the film is seen, but for what the frame gives itself.
 void SceneRenderer::resolveLikeFilm(const SceneDescription& description) {
-  Scene seen = *film_;
-  if (description.lighting != ownLighting_)
-    seen.lighting = description.lighting.resolve(*film_->volume, film_->classification, film_->camera);
-  seen.camera = cameraInFilm(*film_, ownCamera_, description.camera);
-  scene_ = description.resolveLike(seen, scene_.volume);
+  scene_ = description.resolveLike(filmWith(*film_, own_, description), scene_.volume);
 }
 
 /// Resolves camera and light of scene_.
@@ -120,7 +114,7 @@ void SceneRenderer::resolveView(const SceneDescription& description, std::option
   }
   const CameraDescription& given = description.camera;
   SceneDescription own = description;
-  own.camera = ownCamera_;
+  own.camera = own_.camera;
   own.camera.size = given.size;
   if (!given.position) own.camera.position.reset();  // an orbit has replaced it
   own.resolveView(scene_);

@@ -88,8 +88,7 @@ class SceneRenderer {
   const std::shared_ptr<const Scene> film_;  ///< null where the volume is seen by itself
   const bool choosesDevice_;  ///< whether the keywords choose the device
   const std::shared_ptr<DeviceContext> context_;
-  CameraDescription ownCamera_;  ///< of the renderer's own keywords, as is the light
-  LightingDescription ownLighting_;
+  SceneDescription own_;  ///< of the renderer's own keywords
 
   // While context_->turns is held:
   bool isDrawing_ = false;

@@ -5,7 +5,7 @@
 #include <utility>
 
 #include "apps/common/background_writer.h"
-#include "apps/common/frame_camera.h"
+#include "apps/common/frame_view.h"
 #include "apps/common/output_options.h"
 #include "apps/common/scene_options.h"
 #include "apps/common/whole_progress.h"
@@ -127,13 +127,13 @@ void SceneSequence::open(std::size_t frame, const Progress& progress) {
 }
 
 Image SceneSequence::drawEmpty(const KeywordOptions& options, const Aovs& channels) {
-  const CameraDescription& given = options.scene.camera;
-  Image image = emptyImage({.size = given.size, .depth = channels.needDepth()});
-  const Camera seen = view_ ? cameraInFilm(*view_, description_.camera, given) : Camera{};
+  const glm::ivec2 size = options.scene.camera.size;
+  Image image = emptyImage({.size = size, .depth = channels.needDepth()});
+  const Camera seen = view_ ? filmWith(*view_, description_, options.scene).camera : Camera{};
   addChannels(image, channels, seen);
   const std::lock_guard lock(lastFrameMutex_);
   timings_.clear();
-  camera_ = view_ ? keywordsOf(seen, given.size) : Json::object();
+  camera_ = view_ ? keywordsOf(seen, size) : Json::object();
   return image;
 }
 

@@ -218,7 +218,7 @@ TEST(Library, ErrorsNameWhatIsWrong) {
               {"light.dir", "light", "direction", "position"});
   expectError(Usage, R"("frames" is of turntables, and this is one frame)", render(R"({"frames": 3})"), {"frames", "orbit"});
   expectError(Usage, R"("share" is an option of the command line alone)", render(R"({"share": "0/2"})"), {"share"});
-  expectError(Usage, "'s_##.vdb' is a sequence, which the command line alone draws", [] { v1::Volume::open("s_##.vdb"); });
+  expectError(Usage, "'s_##.vdb' is a sequence of volumes: draw it as a Sequence", [] { v1::Volume::open("s_##.vdb"); });
   EXPECT_EQ(v1::Renderer(cloud(), R"({"camera": {"frames": 3, "size": 8}})").render().width, 8) << "of a whole scene, a frame";
   expectError(Usage, R"("exposure" has no effect here)", render(R"({"exposure": 1})"), {"exposure"});
   expectError(Usage, R"(the camera stands at its look-at point; change "camera-position" or "look-at")",

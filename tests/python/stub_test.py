@@ -104,7 +104,8 @@ class StubTest(unittest.TestCase):
         self.assertEqual(repr(renderer), f"<freevoxels.Renderer on {renderer.device}>")
 
     def test_documentation_has_no_signature_twice(self):
-        for item in (freevoxels.render, freevoxels.save, freevoxels.Volume, freevoxels.Renderer, freevoxels.Renderer.render, freevoxels.Volume.open):
+        for item in (freevoxels.render, freevoxels.save, freevoxels.Volume, freevoxels.Renderer, freevoxels.Renderer.render, freevoxels.Volume.open,
+                     freevoxels.Sequence, freevoxels.Sequence.render, freevoxels.render_sequence):
             self.assertNotIn("--", item.__doc__.splitlines()[0])
             self.assertFalse(item.__doc__.startswith(item.__name__ + "("), item.__doc__)
 

@@ -45,6 +45,14 @@ def draw(folder: pathlib.Path) -> None:
     image = freevoxels.render(opened, camera={"orbit": (35, 25)}, size=(24, 16))
     image, depth = freevoxels.render("procedural:cloud", resolution=16, size=[24, 16], depth=True)
 
+    film = freevoxels.Sequence(["procedural:cloud", "procedural:shells"], resolution=16, size=(24, 16), fixed_view=True)
+    assert len(film) == 2 and film.files[0] == "procedural:cloud" and film.numbers == [0, 1]
+    for image in film:
+        assert image.shape == (16, 24, 4)
+    image, depth = film.render(1, depth=True, orbit=(35, 25))
+    written: list[str] = freevoxels.render_sequence(film.files, folder / "film_#.png", resolution=16, size="24x16", exposure=1.5)
+    assert len(written) == 2
+
     scene = folder / "scene.json"
     freevoxels.save_scene(scene, volume="procedural:cloud", resolution=16, size=(24, 16), exposure=1.5)
     sections: dict[str, Any] = freevoxels.load_scene(os.fspath(scene))
