@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <filesystem>
 #include <limits>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
 
@@ -67,6 +68,27 @@ void DeviceOptions::withDevice(const std::function<void(const Device&)>& work) c
     const std::unique_ptr<Device> device = open(instance);
     work(*device);
   });
+}
+
+std::vector<DeviceDescription> findDevices() {
+  std::vector<DeviceDescription> devices;
+  withInstance([&](const Instance& instance) { devices = listDevices(instance); });
+  if (devices.empty()) fail(ErrorKind::Device, "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
+  return devices;
+}
+
+nlohmann::ordered_json toJson(const std::vector<DeviceDescription>& devices) {
+  nlohmann::ordered_json json = nlohmann::ordered_json::array();
+  for (const DeviceDescription& device : devices)
+    json.push_back({{"index", device.index},
+                    {"name", device.name},
+                    {"type", device.type},
+                    {"uuid", device.uuid},
+                    {"driver", device.driver},
+                    {"memory_bytes", device.memoryBytes},
+                    {"usable", device.rejections.empty()},
+                    {"rejections", device.rejections}});
+  return json;
 }
 
 void mentionCpu(const Device& device) {

@@ -3,8 +3,10 @@
 
 #include <functional>
 #include <memory>
+#include <nlohmann/json_fwd.hpp>
 #include <string>
 #include <string_view>
+#include <vector>
 
 #include "apps/common/option_values.h"
 #include "engine/vulkan/device.h"
@@ -33,6 +35,10 @@ void logValidation(std::string_view message);
 
 /// Calls `work` with a Vulkan instance; validation as in withDevice.
 void withInstance(const std::function<void(const Instance&)>& work, std::span<const char* const> extensions = {});
+
+/// The devices of this machine, at least one. Fails with ErrorKind::Device.
+std::vector<DeviceDescription> findDevices();
+nlohmann::ordered_json toJson(const std::vector<DeviceDescription>& devices);
 
 /// Reports that the CPU does the work, if the device is not a GPU.
 void mentionCpu(const Device& device);

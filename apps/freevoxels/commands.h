@@ -61,7 +61,6 @@ class InfoCommand {
 
  private:
   void run();
-  void describeBaked() const;
 
   SceneOptions scene_;  ///< the volume
   bool json_ = false, check_ = false;

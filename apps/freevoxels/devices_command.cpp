@@ -25,20 +25,6 @@ void printTable(const std::vector<DeviceDescription>& devices) {
   for (const std::string& line : table.lines()) fmt::print("{}\n", line);
 }
 
-void printJson(const std::vector<DeviceDescription>& devices) {
-  nlohmann::ordered_json json = nlohmann::ordered_json::array();
-  for (const DeviceDescription& device : devices)
-    json.push_back({{"index", device.index},
-                    {"name", device.name},
-                    {"type", device.type},
-                    {"uuid", device.uuid},
-                    {"driver", device.driver},
-                    {"memory_bytes", device.memoryBytes},
-                    {"usable", device.rejections.empty()},
-                    {"rejections", device.rejections}});
-  fmt::print("{}\n", json.dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
-}
-
 }  // namespace
 
 void DevicesCommand::add(CLI::App& app) {
@@ -48,13 +34,11 @@ void DevicesCommand::add(CLI::App& app) {
 }
 
 void DevicesCommand::run() const {
-  withInstance([this](const Instance& instance) {
-    const std::vector<DeviceDescription> devices = listDevices(instance);
-    if (devices.empty())
-      fail(ErrorKind::Device,
-           "no Vulkan device was found: install mesa-vulkan-drivers to render without a GPU");
-    json_ ? printJson(devices) : printTable(devices);
-  });
+  const std::vector<DeviceDescription> devices = findDevices();
+  if (json_)
+    fmt::print("{}\n", toJson(devices).dump(2, ' ', false, nlohmann::ordered_json::error_handler_t::replace));
+  else
+    printTable(devices);
 }
 
 }  // namespace freevoxels

@@ -9,6 +9,7 @@
 #include "apps/common/program.h"
 #include "apps/common/scene_renderer.h"
 #include "apps/common/scene_sequence.h"
+#include "apps/common/scene_tools.h"
 #include "apps/library/include/freevoxels/freevoxels.h"
 #include "apps/library/include/freevoxels/vulkan.h"
 #include "engine/core/error.h"
@@ -411,6 +412,26 @@ std::string loadScene(const std::filesystem::path& file) {
 
 void saveScene(const std::filesystem::path& file, std::string_view scene) {
   translated([&] { freevoxels::saveScene(file, parseScene(scene)); });
+}
+
+void bake(const std::filesystem::path& volume, const std::filesystem::path& file, std::string_view scene, const Progress& progress) {
+  translated([&] { bakeFile(volume.string(), file.string(), parseScene(scene), {}, progress); });
+}
+
+void bake(const Volume& volume, const std::filesystem::path& file, std::string_view scene, const Progress& progress) {
+  translated([&] { bakeShared(*volume.state_->volume, file.string(), parseScene(scene), progress); });
+}
+
+std::string info(const std::filesystem::path& volume, std::string_view scene) {
+  return translated([&] { return infoOf(volume.string(), parseScene(scene)).dump(2, ' ', false, Json::error_handler_t::replace); });
+}
+
+std::string devices() {
+  return translated([&] { return toJson(findDevices()).dump(2, ' ', false, Json::error_handler_t::replace); });
+}
+
+void merge(const std::vector<std::string>& parts, const std::vector<std::string>& images, std::string_view scene) {
+  translated([&] { mergeFiles(parts, images, parseScene(scene)); });
 }
 
 std::string version() {

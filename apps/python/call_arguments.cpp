@@ -28,10 +28,32 @@ bool flagOf(const py::object& value, const char* name) {
   return value.cast<bool>();
 }
 
+namespace {
+
+bool isName(const py::object& file) {
+  return py::isinstance<py::str>(file) || py::isinstance<py::bytes>(file) || py::hasattr(file, "__fspath__");
+}
+
+}  // namespace
+
 std::filesystem::path pathOf(const py::object& file) {
-  if (!py::isinstance<py::str>(file) && !py::isinstance<py::bytes>(file) && !py::hasattr(file, "__fspath__"))
+  if (!isName(file))
     fail(ErrorKind::Usage, "{} takes the name of a file, not {}", Parameter("file"), typeName(file));
   return jsonOf(py::isinstance<py::bytes>(file) ? py::module_::import("os").attr("fsdecode")(file) : file, "file").get<std::string>();
+}
+
+std::vector<std::string> namesOf(const py::object& names, const char* keyword) {
+  std::vector<std::string> result;
+  const auto add = [&](const py::object& name) {
+    if (!isName(name))
+      fail(ErrorKind::Usage, "{} takes the name of a file or pattern, or a list of them, not {}", Parameter(keyword), typeName(name));
+    result.push_back(pathOf(name).string());
+  };
+  if (py::isinstance<py::list>(names) || py::isinstance<py::tuple>(names))
+    for (const py::handle name : names) add(py::reinterpret_borrow<py::object>(name));
+  else if (!names.is_none())
+    add(names);
+  return result;
 }
 
 py::object Wanted::resultOf(Image& image) const {

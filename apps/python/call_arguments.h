@@ -29,6 +29,9 @@ bool flagOf(const pybind11::object& value, const char* name);
 /// The name of a file: text, bytes or a path. Fails with ErrorKind::Usage for others.
 std::filesystem::path pathOf(const pybind11::object& file);
 
+/// The name of a file or pattern, or those of a list; none of None. Fails with ErrorKind::Usage for others.
+std::vector<std::string> namesOf(const pybind11::object& names, const char* keyword);
+
 /// What a drawing function returns beside the colours.
 struct Wanted {
   Aovs channels;

@@ -12,6 +12,7 @@
 #include "apps/python/numpy_array.h"
 #include "apps/python/python_renderer.h"
 #include "apps/python/python_sequence.h"
+#include "apps/python/python_tools.h"
 #include "apps/python/python_values.h"
 #include "apps/python/python_volume.h"
 
@@ -73,6 +74,7 @@ PYBIND11_MODULE(_core, module) {
   addVolume(module);
   addRenderer(module);
   addSequence(module);
+  addTools(module);
   module.def("load_scene", &loadSceneFile, "file"_a,
              "load_scene(file)\n--\n\n"
              "Reads a scene file, which the command line, the viewer or save_scene wrote: a dictionary of sections, which are keywords\n"

@@ -26,21 +26,6 @@ namespace {
 namespace py = pybind11;
 using Json = nlohmann::json;
 
-/// The name of a file, or those of a list.
-std::vector<std::string> namesOf(const py::object& names, const char* keyword) {
-  std::vector<std::string> result;
-  const auto add = [&](const py::object& name) {
-    if (!py::isinstance<py::str>(name) && !py::isinstance<py::bytes>(name) && !py::hasattr(name, "__fspath__"))
-      fail(ErrorKind::Usage, "{} takes the name of a file or pattern, or a list of them, not {}", Parameter(keyword), typeName(name));
-    result.push_back(pathOf(name).string());
-  };
-  if (py::isinstance<py::list>(names) || py::isinstance<py::tuple>(names))
-    for (const py::handle name : names) add(py::reinterpret_borrow<py::object>(name));
-  else if (!names.is_none())
-    add(names);
-  return result;
-}
-
 /// The frames that a range has, as the option --frames has them; other values as they are.
 py::object framesOf(const py::object& frames) {
   const py::object rangeType = py::module_::import("builtins").attr("range");

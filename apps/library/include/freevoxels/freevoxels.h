@@ -132,6 +132,7 @@ class FREEVOXELS_API Volume {
  private:
   struct State;
   friend class Renderer;
+  friend FREEVOXELS_API void bake(const Volume& volume, const std::filesystem::path& file, std::string_view scene, const Progress& progress);
   explicit Volume(std::shared_ptr<const State> state) : state_(std::move(state)) {}
   std::shared_ptr<const State> state_;
 };
@@ -256,6 +257,26 @@ class FREEVOXELS_API Sequence {
 /// Writes a .png (8-bit sRGB over a background) or an .exr (linear, with depth if the image has it),
 /// atomically. `scene` has background, exposure, tone-map and float.
 FREEVOXELS_API void save(const std::filesystem::path& file, const Image& image, std::string_view scene = "{}");
+
+/// Bakes a volume as `freevoxels bake` does: classifies it once and writes a file, whose name ends in .fvx, that opens at once and may be
+/// larger than memory. `volume` is a file or "procedural:NAME"; if it is empty, the scene's key "volume". `scene` has the keys grid,
+/// resolution, those of the sections classification and emission, and
+///   "keep-scalars": true, for values as 32-bit floats, so that the classification can still be changed; "compress": true.
+FREEVOXELS_API void bake(const std::filesystem::path& volume, const std::filesystem::path& file, std::string_view scene = "{}",
+                         const Progress& progress = {});
+/// Bakes a volume that is open. `scene` has no keys of the volume.
+FREEVOXELS_API void bake(const Volume& volume, const std::filesystem::path& file, std::string_view scene = "{}", const Progress& progress = {});
+
+/// What a file or "procedural:NAME" holds: the text of `freevoxels info --json`. `scene` has the key "resolution", and "check": true reads
+/// all of a baked volume and fails with ErrorKind::Input where anything is damaged.
+FREEVOXELS_API std::string info(const std::filesystem::path& volume, std::string_view scene = "{}");
+
+/// The Vulkan devices of this machine: the text of `freevoxels devices --json`.
+FREEVOXELS_API std::string devices();
+
+/// Adds up the files of sums that `freevoxels render --share I/N --sums` wrote, and writes the image, as `freevoxels merge` does. `scene`
+/// as for save().
+FREEVOXELS_API void merge(const std::vector<std::string>& parts, const std::vector<std::string>& images, std::string_view scene = "{}");
 
 /// Reads a scene file, which the command line, the viewer or saveScene() wrote, or a person: the text of a scene, with absolute
 /// names of files. Fails with ErrorKind::Input and a sentence that names the file and the key.

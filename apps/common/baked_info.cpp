@@ -1,4 +1,4 @@
-#include "apps/freevoxels/baked_info.h"
+#include "apps/common/baked_info.h"
 
 #include <fmt/format.h>
 

@@ -1,0 +1,31 @@
+#pragma once
+// What freevoxels info says of a volume.
+
+#include <memory>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "engine/description/scene_description.h"
+#include "engine/memory_planner.h"
+#include "engine/volume/vdb.h"
+
+namespace freevoxels {
+
+/// The grids of a volume that is not baked. Reads a procedural one. Fails as describeVdb does.
+std::vector<GridInfo> gridsOf(const InputDescription& input);
+/// The file of a baked volume, null for others. `check`: all of it is read, and refused where anything is damaged; a volume that is not
+/// baked then fails with ErrorKind::Usage.
+std::shared_ptr<const fvx::FvxFile> checkedBaked(const InputDescription& input, bool check);
+
+/// Memory without voxel colours; of the whole box if the occupied blocks were not counted.
+VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions);
+/// Bytes stored for each occupied voxel with 26 directions.
+double bytesPerVoxel(const GridInfo& grid);
+/// The possible uses of a grid.
+std::vector<std::string> usesOf(const GridInfo& grid);
+
+/// All of this as JSON; `check` as above.
+nlohmann::ordered_json volumeInfo(const InputDescription& input, bool check);
+
+}  // namespace freevoxels

@@ -1,0 +1,11 @@
+#pragma once
+// The module's functions beside drawing: devices(), info(), bake() and merge().
+
+#include <pybind11/pybind11.h>
+
+namespace freevoxels {
+
+/// Adds them. Volume must have been added.
+void addTools(pybind11::module_& module);
+
+}  // namespace freevoxels
