@@ -89,7 +89,7 @@ BakeTeam Baker::team() const {
 void Baker::bake(const Volume& volume) const {
   if (volume.classificationIsFixed)
     fail(ErrorKind::Usage, "'{}' was baked for one classification: bake the volume that it was made of, or bake it with {}",
-         scene_.input.volume, Parameter("keep-scalars"));
+         scene_.input.volume.empty() ? volume.source : scene_.input.volume, Parameter("keep-scalars"));
   const Classification classification = scene_.resolveClassification(volume);
   if (remarks_) remarks_({.volume = borrowed(volume), .classification = classification});
   const BakeSettings chosen = settings(volume, classification);

@@ -1,5 +1,8 @@
 #include "apps/common/scene_tools.h"
 
+#include <exception>
+#include <mutex>
+
 #include "apps/common/keyword_options.h"
 #include "apps/common/merge.h"
 #include "apps/common/output_options.h"
@@ -27,6 +30,30 @@ BakeRequest requestOf(const std::string& file, Json keywords, const KeywordOptio
   return request;
 }
 
+/// Runs work that may be abandoned by a caller's exception, which leaves it as it is: what writes a file would take it for the library's
+/// that writes, and say that the file cannot be written.
+template <typename Work>
+void abandonable(const Progress& progress, const Work& work) {
+  struct Abandoned {};  // of no class that anything catches
+  if (!progress) return work(progress);
+  std::exception_ptr thrown;
+  std::mutex mutex;  // guards it, as threads that read call the function
+  const Progress kept = [&](std::string_view stage, double fraction) {
+    try {
+      progress(stage, fraction);
+    } catch (...) {
+      const std::lock_guard lock(mutex);
+      if (!thrown) thrown = std::current_exception();
+      throw Abandoned();
+    }
+  };
+  try {
+    work(kept);
+  } catch (const Abandoned&) {
+    std::rethrow_exception(thrown);
+  }
+}
+
 /// The keywords with the name of a volume, unless that is empty.
 Json withVolume(Json keywords, const std::string& volume) {
   if (!volume.empty()) keywords["volume"] = volume;
@@ -41,13 +68,15 @@ void bakeFile(const std::string& volume, const std::string& file, const Json& ke
   if (request.scene.input.volume.empty())
     fail(ErrorKind::Usage, "there is no volume to bake: name a file or procedural:NAME, or give a scene with a {}", Parameter("volume"));
   checkBake(request);
-  bakeScene(request, remarks, progress);
+  abandonable(progress, [&](const Progress& kept) { bakeScene(request, remarks, kept); });
 }
 
 void bakeShared(const SharedVolume& volume, const std::string& file, const Json& keywords, const Progress& progress) {
   const BakeRequest request = requestOf(file, keywords, {"classification", "emission", "scene"});
   checkBake(request);
-  bakeInMemory(request, *volume.source({.level = 0, .isRead = true}, progress)->whole(progress), progress);
+  abandonable(progress, [&](const Progress& kept) {
+    bakeInMemory(request, *volume.source({.level = 0, .isRead = true}, kept)->whole(kept), kept);
+  });
 }
 
 nlohmann::ordered_json infoOf(const std::string& volume, const Json& keywords) {

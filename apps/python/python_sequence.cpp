@@ -37,10 +37,7 @@ py::object framesOf(const py::object& frames) {
 
 /// The keywords of a sequence as it takes them.
 Json optionsOf(const py::object& frames, const py::object& fixedView, const py::kwargs& keywords) {
-  py::kwargs placement;
-  for (const auto& [key, value] : keywords)
-    if (keywordText(key) != "no_data") placement[key] = value;  // which files have as well
-  refusePlacement(placement, "a file");
+  refuseArrayOptions(keywords);
   Json options = jsonOf(keywords);
   if (!frames.is_none()) options["frames"] = jsonOf(framesOf(frames), "frames");
   if (!fixedView.is_none()) options["fixed-view"] = flagOf(fixedView, "fixed-view");

@@ -63,6 +63,7 @@ void bake(const py::object& volume, const py::object& file, const py::args& more
     return bakeOpened(volume.cast<const PythonVolume&>(), name, optionsOf(keywords), report);
   }
   if (volume.is_none() || py::isinstance<py::str>(volume) || py::hasattr(volume, "__fspath__")) {
+    refuseArrayOptions(keywords);
     const std::string source = volume.is_none() ? "" : pathOf(volume).string();
     const Json options = optionsOf(keywords);
     const py::gil_scoped_release withoutGil;

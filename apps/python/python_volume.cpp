@@ -109,6 +109,13 @@ void refusePlacement(const py::kwargs& keywords, const char* what) {
       fail(ErrorKind::Usage, "{} is an option of arrays, and {} has its own: leave it out", Parameter(name), what);
 }
 
+void refuseArrayOptions(const py::kwargs& keywords) {
+  py::kwargs placement;
+  for (const auto& [key, value] : keywords)
+    if (keywordText(key) != "no_data") placement[key] = value;  // which files have as well
+  refusePlacement(placement, "a file");
+}
+
 PythonVolume volumeFromArray(const py::args& arguments, const py::kwargs& named) {
   const auto [array, keywords] = oneOf(arguments, named, "array", "Volume()");
   std::vector<std::string> known(kPlacementKeywords.begin(), kPlacementKeywords.end());
@@ -128,10 +135,7 @@ PythonVolume volumeFromArray(const py::args& arguments, const py::kwargs& named)
 
 PythonVolume volumeFromFile(const py::object& file, const py::args& more, const py::kwargs& keywords) {
   refuseMore(more, "Volume.open()", "one file");
-  py::kwargs placement;
-  for (const auto& [key, value] : keywords)
-    if (keywordText(key) != "no_data") placement[key] = value;  // which files have as well
-  refusePlacement(placement, "a file");
+  refuseArrayOptions(keywords);
   const Json options = jsonOf(keywords);
   const std::string name = file.is_none() ? "" : pathOf(file).string();
   PythonVolume opened;

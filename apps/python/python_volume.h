@@ -29,6 +29,9 @@ bool isOfArrays(const std::string& keyword);
 /// Fails with ErrorKind::Usage for a placement of `what`, such as "a file".
 void refusePlacement(const pybind11::kwargs& keywords, const char* what);
 
+/// The same for a file that is opened, which may have the value that holds no data.
+void refuseArrayOptions(const pybind11::kwargs& keywords);
+
 /// Adds the class.
 void addVolume(pybind11::module_& module);
 

@@ -33,7 +33,8 @@ class ManualTest(unittest.TestCase):
             printed = self.run_in(folder, "page.py", "\n".join(whole))
             self.assertIn("camera_position", printed)
             self.assertIn("(300, 400, 4)", printed)
-            for name in ["image.png", "side.png", "side.json", *(f"turn_{k}.png" for k in range(8)), *(f"step_{k}.png" for k in range(4))]:
+            for name in ["image.png", "side.png", "side.json", *(f"turn_{k}.png" for k in range(8)), *(f"step_{k}.png" for k in range(4)),
+                         *(f"film_000{k}.{form}" for k in (1, 2, 3) for form in ("png", "exr"))]:
                 self.assertTrue((pathlib.Path(folder) / name).exists(), name)
 
     def test_the_pool_draws(self):

@@ -53,6 +53,15 @@ def draw(folder: pathlib.Path) -> None:
     written: list[str] = freevoxels.render_sequence(film.files, folder / "film_#.png", resolution=16, size="24x16", exposure=1.5)
     assert len(written) == 2
 
+    freevoxels.bake(array, folder / "array.fvx", spacing=(1, 1, 2.5), keep_scalars=True, density_scale=0.1, progress=report)
+    facts: dict[str, Any] = freevoxels.info(folder / "array.fvx", check=True)
+    found: list[dict[str, Any]] = freevoxels.devices()
+    assert facts["levels"] and found
+    try:
+        freevoxels.merge([folder / "array.fvx"], folder / "merged.png", exposure=1)
+    except freevoxels.UsageError:
+        pass
+
     scene = folder / "scene.json"
     freevoxels.save_scene(scene, volume="procedural:cloud", resolution=16, size=(24, 16), exposure=1.5)
     sections: dict[str, Any] = freevoxels.load_scene(os.fspath(scene))
