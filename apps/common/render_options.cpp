@@ -8,6 +8,7 @@
 #include <filesystem>
 
 #include "apps/common/frame_series.h"
+#include "apps/common/kept_renderer.h"
 #include "engine/core/error.h"
 #include "engine/renderer.h"
 
@@ -55,8 +56,7 @@ void RenderOptions::skipExisting(std::span<FrameJob> frames) const {
 }
 
 FrameSettings RenderOptions::frameSettings() const {
-  FrameSettings settings{.size = scene.description.camera.size, .depth = scene.description.output.aovs.needDepth()};
-  scene.description.method.apply(settings);
+  const FrameSettings settings = freevoxels::frameSettings(scene.description, scene.description.output.aovs.needDepth());
   return drawsShares() ? sharedSettings(settings) : settings;
 }
 

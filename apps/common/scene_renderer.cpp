@@ -90,13 +90,14 @@ SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json ke
       keywords_(std::move(keywords)),
       film_(std::move(film)),
       choosesDevice_(!context),
-      context_(context ? std::move(context) : sharedContext(read(Json::object())->device)) {
+      context_(context ? std::move(context) : sharedContext(read(Json::object())->device)),
+      kept_(*context_->device) {
   own_ = read(Json::object())->scene;
 }
 
 SceneRenderer::~SceneRenderer() {
   if (context_->isOfThisProcess()) return;
-  (void)renderer_.release();
+  kept_.abandon();
   (void)new std::shared_ptr<DeviceContext>(context_);
 }
 
@@ -127,50 +128,30 @@ void SceneRenderer::resolveView(const SceneDescription& description, std::option
   if (isMoved) scene_.camera = movedTo(given.angles(), given.up.value_or(scene_.volume->up), scene_.camera);
 }
 
-/// Makes renderer_ anew if the options need another one.
-FrameSettings SceneRenderer::prepare(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress) {
-  FrameSettings settings{.size = options.scene.camera.size, .depth = depth};
-  options.scene.method.apply(settings);
-  checkFrameFits(*context_->device, settings);
-  if (const BakedNeed need = volume_->needOf(options.scene, step ? step->frames : 1); !source_ || need != need_) {
-    renderer_ = nullptr;  // which has the volume of the source before: not both at once
-    scene_.volume = nullptr;
-    source_ = nullptr;
-    source_ = volume_->source(need, progress);
-    scene_.volume = known(source_);
-    need_ = need;
-  }
-  if (film_) {
-    resolveLikeFilm(options.scene);
-  } else {
-    classify(options.scene);
-    resolveView(options.scene, step);
-  }
-  settings.lighting = scene_.lighting;
-  makeRenderer(options, progress);
-  return settings;
+/// Takes the level of detail that a frame needs.
+void SceneRenderer::takeSource(const SceneDescription& description, int frames, const Progress& progress) {
+  const BakedNeed need = volume_->needOf(description, frames);
+  if (source_ && need == need_) return;
+  kept_.release();  // with the volume of the source before: not both at once
+  scene_.volume = nullptr;
+  source_ = nullptr;
+  classification_.reset();
+  source_ = volume_->source(need, progress);
+  scene_.volume = known(source_);
+  need_ = need;
 }
 
 /// Resolves the classification of scene_ unless it is that of the frame before.
 void SceneRenderer::classify(const SceneDescription& description) {
   const std::string classification = textOf(description, {"classification", "emission"});
-  if (renderer_ && classification == classification_) return;
+  if (classification == classification_) return;
   scene_.classification = description.resolveClassification(*scene_.volume);
   classification_ = classification;
 }
 
-void SceneRenderer::makeRenderer(const KeywordOptions& options, const Progress& progress) {
-  const std::string text = rendererText(options.scene, scene_);
-  if (renderer_ && text == rendererText_) return;
-  renderer_ = nullptr;  // so that the device never holds two
-  renderer_ = std::make_unique<Renderer>(*context_->device, source_, scene_.classification, options.scene.method.table(), progress);
-  rendererText_ = text;
-  isRendererNew_ = true;
-}
-
 void SceneRenderer::complete(glm::ivec2 size) {
   context_->checkValidation();
-  std::vector<StageTime> times = std::exchange(isRendererNew_, false) ? renderer_->timings() : renderer_->frameTimings();
+  std::vector<StageTime> times = kept_.takeTimings();
   const std::lock_guard lock(lastFrameMutex_);
   timings_ = std::move(times);
   camera_ = keywordsOf(scene_.camera, size);
@@ -183,8 +164,18 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
   context_->refuseAfterFork();
   const FrameTurn turn(context_->turns, isDrawing_);
   const Progress whole = wholeProgress(progress);
-  const FrameSettings settings = prepare(options, step, depth, whole);
-  auto drawn = std::invoke(work, *renderer_, scene_.camera, settings, whole);
+  const SceneDescription& description = options.scene;
+  FrameSettings settings = frameSettings(description, depth);
+  checkFrameFits(*context_->device, settings);
+  takeSource(description, step ? step->frames : 1, whole);
+  if (film_) {
+    resolveLikeFilm(description);
+  } else {
+    classify(description);
+    resolveView(description, step);
+  }
+  settings.lighting = scene_.lighting;
+  auto drawn = std::invoke(work, kept_.get(source_, description, scene_, whole), scene_.camera, settings, whole);
   if (progress) progress("complete", 1.0);
   complete(settings.size);
   return drawn;

@@ -10,9 +10,9 @@
 #include <vector>
 
 #include "apps/common/device_context.h"
+#include "apps/common/kept_renderer.h"
 #include "apps/common/keyword_options.h"
 #include "apps/common/shared_volume.h"
-#include "engine/renderer.h"
 
 namespace freevoxels {
 
@@ -76,11 +76,10 @@ class SceneRenderer {
   /// Prepares a frame and returns what `work`, a drawing function of Renderer, makes of it.
   template <typename Work>
   auto draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress, const Work& work);
-  FrameSettings prepare(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress);
+  void takeSource(const SceneDescription& description, int frames, const Progress& progress);
   void classify(const SceneDescription& description);
   void resolveLikeFilm(const SceneDescription& description);
   void resolveView(const SceneDescription& description, std::optional<TurnStep> step);
-  void makeRenderer(const KeywordOptions& options, const Progress& progress);
   void complete(glm::ivec2 size);
 
   const std::shared_ptr<const SharedVolume> volume_;
@@ -95,10 +94,8 @@ class SceneRenderer {
   BakedNeed need_;
   std::shared_ptr<const VolumeSource> source_;  ///< of the last frame, what it needed
   Scene scene_;                                 ///< of the last frame, with what is known of the volume
-  std::string classification_;                  ///< the fields of which scene_.classification was made
-  std::string rendererText_;                    ///< rendererText for which renderer_ was made
-  std::unique_ptr<Renderer> renderer_;
-  bool isRendererNew_ = false;  ///< whether it was made for the frame that is being drawn
+  std::optional<std::string> classification_;   ///< the fields of which scene_.classification was made
+  KeptRenderer kept_;
 
   mutable std::mutex lastFrameMutex_;  ///< guards the members below, of the last complete frame
   std::vector<StageTime> timings_;

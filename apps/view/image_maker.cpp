@@ -88,34 +88,23 @@ glm::ivec3 VolumeCache::wholeDimensions() const {
 }
 
 ImageMaker::ImageMaker(const Device& device, VolumeCache& volumes)
-    : device_(device), volumes_(volumes), diagnoser_(device) {}
+    : device_(device), volumes_(volumes), kept_(device), diagnoser_(device) {}
 
-std::shared_ptr<const Volume> ImageMaker::coarse(const Scene& scene, int voxelsAlongEdge) {
+std::shared_ptr<const VolumeSource> ImageMaker::coarse(const Scene& scene, int voxelsAlongEdge) {
   const bool densities = !scene.classification.transferFunction;
   const int edge = blockEdge(*scene.volume, voxelsAlongEdge);
   if (whole_ == scene.volume && edge == blockEdge_ && densities == coarseIsOfDensities_) return coarse_;
   // Before anything can fail, so that nothing of the last volume is taken for this one's; and not both in memory at once.
-  renderer_ = nullptr;  // which refers to the volume
-  whole_ = coarse_ = nullptr;
-  coarse_ = edge <= 1 ? scene.volume
-                      : std::make_shared<const Volume>(coarseVolume(
-                            *scene.volume, edge, densities ? WithoutData::Zero : WithoutData::Ignored));
+  kept_.release();  // which refers to the volume
+  whole_ = nullptr;
+  coarse_ = nullptr;
+  coarse_ = std::make_shared<const VolumeInMemory>(
+      edge <= 1 ? scene.volume
+                : std::make_shared<const Volume>(coarseVolume(*scene.volume, edge, densities ? WithoutData::Zero : WithoutData::Ignored)));
   whole_ = scene.volume;
   blockEdge_ = edge;
   coarseIsOfDensities_ = densities;
   return coarse_;
-}
-
-void ImageMaker::makeRenderer(const Scene& scene, const ImageRequest& request, const Progress& progress) {
-  const std::shared_ptr<const Volume> volume = coarse(scene, request.voxelsAlongEdge);
-  const std::string options = rendererText(request.scene, scene);
-  if (renderer_ && options == rendererOptions_) return;
-  renderer_ = nullptr;  // not both at once
-  diagnoser_.reset();
-  rendererOptions_.clear();
-  renderer_ =
-      std::make_unique<Renderer>(device_, *volume, scene.classification, request.scene.method.table(), progress);
-  rendererOptions_ = options;
 }
 
 /// Sums over the volume, the environment and the histogram are made once for all cameras.
@@ -151,21 +140,21 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
                    .wholeDimensions = volumes_.wholeDimensions(),
                    .device = device_.description()};
   const auto start = std::chrono::steady_clock::now();
-  makeRenderer(drawn.scene, request, progress);
+  const std::shared_ptr<const VolumeSource> source = coarse(drawn.scene, request.voxelsAlongEdge);
+  if (!kept_.isFor(source, request.scene, drawn.scene)) diagnoser_.reset();
+  Renderer& renderer = kept_.get(source, request.scene, drawn.scene, progress);
 
-  FrameSettings settings{.size = request.scene.camera.size,
-                         .depth = request.scene.output.aovs.needDepth(),
-                         .lighting = drawn.scene.lighting};
-  request.scene.method.apply(settings);
-  drawn.image = renderer_->renderOnDevice(drawn.scene.camera, settings, progress);
+  FrameSettings settings = frameSettings(request.scene, request.scene.output.aovs.needDepth());
+  settings.lighting = drawn.scene.lighting;
+  drawn.image = renderer.renderOnDevice(drawn.scene.camera, settings, progress);
   drawn.shown = {drawn.image, &drawn.image->colorEnergy};
-  drawn.times = renderer_->timings();
-  drawn.memory = renderer_->memory();
-  drawn.cut = renderer_->cutCounts();
-  drawn.visibleVoxels = renderer_->occupiedVoxelCount();
+  drawn.times = renderer.timings();
+  drawn.memory = renderer.memory();
+  drawn.cut = renderer.cutCounts();
+  drawn.visibleVoxels = renderer.occupiedVoxelCount();
   if (request.diagnosis.shown != Shown::Image)
     drawn.shown = std::make_shared<const RenderTarget>(
-        uploadImage(device_, diagnoser_.make(request.diagnosis, *renderer_, *coarse_, request.scene.method.table(),
+        uploadImage(device_, diagnoser_.make(request.diagnosis, renderer, *known(source), request.scene.method.table(),
                                              drawn.scene.camera, settings)));
   drawn.milliseconds =
       std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();

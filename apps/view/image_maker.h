@@ -8,10 +8,10 @@
 #include <vector>
 
 #include "apps/common/film_view.h"
+#include "apps/common/kept_renderer.h"
 #include "apps/view/diagnosis.h"
 #include "apps/view/image_pace.h"
 #include "engine/description/scene_description.h"
-#include "engine/renderer.h"
 
 namespace freevoxels {
 
@@ -89,19 +89,18 @@ class ImageMaker {
 
  private:
   Scene resolve(const ImageRequest& request, const FilmView* film);
-  void makeRenderer(const Scene& scene, const ImageRequest& request, const Progress& progress);
-  std::shared_ptr<const Volume> coarse(const Scene& scene, int voxelsAlongEdge);
+  std::shared_ptr<const VolumeSource> coarse(const Scene& scene, int voxelsAlongEdge);
 
   const Device& device_;
   VolumeCache& volumes_;
-  std::shared_ptr<const Volume> whole_, coarse_;  ///< coarse_ is made from whole_, or equal to it
-  int blockEdge_ = 0;                             ///< block edge of coarse_
+  std::shared_ptr<const Volume> whole_;
+  std::shared_ptr<const VolumeSource> coarse_;  ///< made from whole_, or of it
+  int blockEdge_ = 0;                           ///< block edge of coarse_
   bool coarseIsOfDensities_ = false;
   std::string input_;           ///< of the last request
   std::optional<Scene> scene_;  ///< of the last request
   std::uint64_t revision_ = 0;
-  std::string rendererOptions_;
-  std::unique_ptr<Renderer> renderer_;
+  KeptRenderer kept_;
   Diagnoser diagnoser_;
 };
 
