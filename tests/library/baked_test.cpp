@@ -81,5 +81,31 @@ TEST_F(BakedTest, ADamagedChunkIsNamedWhenItIsDrawn) {
   }
 }
 
+TEST_F(BakedTest, FilesAndFactsAreThoseOfTheCommandLine) {
+  run("generate cloud a.vdb --resolution 12x20x9");
+  const std::string path = folder_.path().string();
+  run(fmt::format("bake '{}/a.vdb' theirs.fvx --density-scale 30 --compress", path));  // the file says which name it was given
+  v1::bake(folder_ / "a.vdb", folder_ / "ours.fvx", R"({"density-scale": 30, "compress": true})");
+  EXPECT_TRUE(test::readBytes(folder_ / "ours.fvx") == test::readBytes(folder_ / "theirs.fvx"));
+  const std::string inFolder = fmt::format("cd '{}' && ", path);
+  ASSERT_EQ(std::system((inFolder + "'" FREEVOXELS_PROGRAM "' info ours.fvx --json > info.txt").c_str()), 0);
+  EXPECT_EQ(v1::info(folder_ / "ours.fvx", R"({"check": true})") + "\n", test::readBytes(folder_ / "info.txt"));
+  for (const int share : {0, 1}) run(fmt::format("render a.vdb part_{}.exr --share {}/2 --sums --size 20", share, share));
+  run("merge part_0.exr part_1.exr theirs.png");
+  v1::merge({path + "/part_1.exr", path + "/part_0.exr"}, {path + "/ours.png"});
+  EXPECT_TRUE(test::readBytes(folder_ / "ours.png") == test::readBytes(folder_ / "theirs.png"));
+  EXPECT_NE(v1::devices().find(v1::Context().device()), std::string::npos);
+
+  const std::vector<float> values(20 * 13 * 9, 1.0f);
+  const v1::Volume volume = v1::Volume::copy(values, {20, 13, 9});
+  v1::bake(volume, folder_ / "copy.fvx", R"({"keep-scalars": true})");
+  EXPECT_EQ(v1::Renderer(v1::Volume::open(folder_ / "copy.fvx"), R"({"size": 20})").render().pixels,
+            v1::Renderer(volume, R"({"size": 20})").render().pixels);
+  struct Abandoned {};
+  EXPECT_THROW(v1::bake(volume, folder_ / "none.fvx", "{}", [](std::string_view, double) { throw Abandoned(); }), Abandoned);
+  EXPECT_FALSE(std::filesystem::exists(folder_ / "none.fvx"));
+  EXPECT_THROW(v1::bake(volume, folder_ / "none.vdb"), v1::Error);
+}
+
 }  // namespace
 }  // namespace freevoxels
