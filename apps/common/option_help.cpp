@@ -119,8 +119,8 @@ const std::vector<OptionHelp> kMethodHelp{
     {"culling", "Whether splats outside of the image are left out, and rays of the gather end early; --composite sorted draws all [yes]",
      true},
     {"cull-threshold",
-     "Transmittance to the eye at which a ray of the gather ends [1/512], and below which the table hides blocks of splats [0]; 0 leaves "
-     "nothing out",
+     "Transmittance to the eye at which a ray of the gather ends, and below which the table hides blocks of splats with --composite "
+     "additive; 0 leaves nothing out [1/512]",
      true},
     {"hierarchy-filter", "Mean of its voxels' transmittances that a block has [geometric]", true},
     {"paper",

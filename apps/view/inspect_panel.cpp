@@ -15,24 +15,20 @@ namespace freevoxels {
 
 namespace {
 
-constexpr double kMinThreshold = 1e-6, kUsualThreshold = 1.0 / 512.0, kMaxThreshold = 0.1;
+constexpr double kMinThreshold = 1e-5, kMaxThreshold = 0.1;
 
 /// What is not given comes to.
 struct Usual {
   TableSettings table;
   SplatSettings splats;
-  double lod = 0.0, threshold = 0.0;
+  double lod = 0.0;
 };
 
-Usual usualOf(const MethodDescription& method) {
-  const MethodDescription none{.paper = method.paper, .draw = Draw::Splats};
+Usual usualOf(bool paper) {
+  const MethodDescription none{.paper = paper, .draw = Draw::Splats};
   FrameSettings frame;
   none.apply(frame);
-  const bool gathers = method.drawing() == Draw::Gather;
-  return {.table = none.table(),
-          .splats = frame.splats(),
-          .lod = double(frame.lod),
-          .threshold = double(gathers ? GatherSettings{}.endTransmittance : frame.splats().cullThreshold)};
+  return {.table = none.table(), .splats = frame.splats(), .lod = double(frame.lod)};
 }
 
 bool drawPaper(MethodDescription& method) {
@@ -65,20 +61,11 @@ bool drawDetail(MethodDescription& method, const Usual& usual) {
   changed |= tick("Culling", method.culling, usual.splats.culling);
   hint("Leaves out blocks outside of the image, and the rest of rays that nothing shows behind", "--culling");
   ImGui::BeginDisabled(!method.culling.value_or(usual.splats.culling));
-  double threshold = method.cullThreshold.value_or(usual.threshold);
-  bool hides = threshold > 0.0;
-  if (tick("Threshold", hides)) {
-    threshold = hides ? kUsualThreshold : 0.0;
-    method.cullThreshold = threshold;
-    changed = true;
-  }
-  ImGui::BeginDisabled(!hides);
-  threshold = std::max(threshold, kMinThreshold);
+  double threshold = std::max(method.cullThreshold.value_or(double(GatherSettings{}.endTransmittance)), kMinThreshold);
   if (slideLogarithmic("Cull threshold", threshold, kMinThreshold, kMaxThreshold)) {
     method.cullThreshold = threshold;
     changed = true;
   }
-  ImGui::EndDisabled();
   hint("Share of the light that reaches the eye, below which blocks are left out and rays end", "--cull-threshold");
   ImGui::EndDisabled();
   return changed;
@@ -266,7 +253,7 @@ void drawMethod(ViewState& state) {
     method.draw.reset();
   }
   changed |= drawPaper(method);
-  const Usual usual = usualOf(method);
+  const Usual usual = usualOf(method.paper);
   changed |= choose("Composite", kCompositeWords, method.composite, usual.splats.composite);
   hint("How splats become an image; sorted is classic splatting", "--composite");
   const bool sorted = method.composite == Composite::Sorted;

@@ -44,10 +44,9 @@ struct SplatSettings {
   /// kernel's depth. Otherwise a splat has the optical depth in front of its voxel's centre, as in the paper.
   bool gradient = true;
   bool culling = true;  ///< whether blocks outside of the image are left out; Sorted draws all voxels
-  /// Blocks of which the table says that less than this part of their light reaches the eye are left out; 0 leaves out none. Ignored
-  /// without `culling`, by Sorted, by parts, and where the eye is inside the volume. What is seen through a hole that none of the table's
-  /// directions passes is lost with it.
-  float cullThreshold = 0.0f;
+  /// Blocks of which the table says that less than this part of their light reaches the eye are left out; 0 leaves out none. Only of
+  /// Additive with `culling` (cullRule), and not of parts.
+  float cullThreshold = 1.0f / 512.0f;
 };
 
 struct FrameSettings {

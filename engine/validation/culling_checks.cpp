@@ -16,7 +16,6 @@ namespace freevoxels {
 namespace {
 
 constexpr float kAmplification = 20.0f;
-constexpr float kHiddenTransmittance = 1e-5f;
 
 struct View {
   std::string name;
@@ -62,7 +61,7 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
   ReportSection section{.title = fmt::format("Culling: {}", scene.name),
                         .text = "Images without what is outside of them or hidden, against images of everything."};
   Renderer renderer(device, scene.volume, scene.classification, {});
-  const FrameSettings culled{.size = glm::ivec2(imageEdge), .method = SplatSettings{.cullThreshold = kHiddenTransmittance}, .lod = 0.0f};
+  const FrameSettings culled{.size = glm::ivec2(imageEdge), .method = SplatSettings{.composite = Composite::Additive}, .lod = 0.0f};
   FrameSettings whole = culled, clipped = culled;
   whole.splats().culling = false;
   clipped.splats().cullThreshold = 0.0f;

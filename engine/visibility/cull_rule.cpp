@@ -45,7 +45,8 @@ CullRule cullRule(glm::ivec3 dimensions, const PixelRays& rays, const FrameSetti
   rule.planes = imagePlanes(0.5 * glm::dvec3(dimensions - 1), rays, settings.size);
   rule.outside = !areAllInside(rule.planes, dimensions);
   const double threshold = double(settings.splats().cullThreshold);
-  if (threshold > 0.0 && isOutsideBox(rays, dimensions)) rule.hiddenDepth = -std::log(threshold);
+  if (threshold > 0.0 && settings.splats().composite == Composite::Additive && isOutsideBox(rays, dimensions))
+    rule.hiddenDepth = -std::log(threshold);
   return rule;
 }
 

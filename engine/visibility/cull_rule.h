@@ -22,8 +22,9 @@ struct CullRule {
   bool leavesNothingOut() const { return !outside && hiddenDepth == 0.0; }
 };
 
-/// The rule of a frame of splats. Blocks are only hidden if the eye is outside of the volume's box: for an eye inside, the table's optical
-/// depths count to the outside and exceed those to the eye.
+/// The rule of a frame of splats. Blocks are only hidden from the additive composite, to which they add no more than the table says: the
+/// normalised one has their optical depth, too, and where all voxels on a ray are dark the least dark one decides the colour. The eye must
+/// be outside of the volume's box: for an eye inside, the table's optical depths count to the outside and exceed those to the eye.
 CullRule cullRule(glm::ivec3 dimensions, const PixelRays& rays, const FrameSettings& settings);
 
 /// Whether any block can be hidden, that is, dark in all four table directions around a line of sight

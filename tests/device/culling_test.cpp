@@ -38,7 +38,7 @@ class CullingTest : public DeviceTest {
     CutCounts counts;
     std::uint64_t voxels = 0;
   };
-  static constexpr float kHidden = 1e-5f;
+  static constexpr SplatSettings kHiding{.composite = Composite::Additive};
   static Outcome expectSameImage(Renderer& renderer, const Camera& camera, FrameSettings settings, const std::string& name) {
     settings.splats().culling = false;
     const Image expected = renderer.render(camera, settings);
@@ -76,10 +76,7 @@ TEST_F(CullingTest, WhatIsLeftOutDoesNotShowFromAnywhere) {
                                       180.0 * uniform(generator) - 90.0, 1.0, {.orthographic = i == 1});
         camera.position =
             camera.lookAt + (0.4 + 2.0 * uniform(generator)) * (camera.position - camera.lookAt);
-        const FrameSettings settings{
-            .size = {112, 96},
-            .method = SplatSettings{.composite = i == 2 ? Composite::Additive : Composite::Normalised, .cullThreshold = kHidden},
-            .lod = i == 3 ? 3.0f : 0.0f};
+        const FrameSettings settings{.size = {112, 96}, .method = kHiding, .lod = i == 3 ? 3.0f : 0.0f};
         hidden += expectSameImage(renderer, camera, settings,
                                   fmt::format("{}, camera {}, {} directions, code {}", subject.name, i, directionCount(table.directions),
                                               int(table.code)))
@@ -94,15 +91,14 @@ TEST_F(CullingTest, MostOfAnOpaqueHeadIsNeverDrawn) {
   // Each voxel by itself, whatever the resolution.
   scene.classification.transferFunction->unitDistance = scene.volume.voxelSize();
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  const Outcome outcome = expectSameImage(renderer, viewCamera(scene.volume, {}),
-                                          {.size = {256, 256}, .method = SplatSettings{.cullThreshold = kHidden}}, "opaque head");
+  const Outcome outcome = expectSameImage(renderer, viewCamera(scene.volume, {}), {.size = {256, 256}, .method = kHiding}, "opaque head");
   EXPECT_LT(double(drawnBlocks(outcome.counts)), 0.30 * double(outcome.voxels));
 }
 
 /// A channel along (3, 1, 2), between the directions of the table, into an opaque box, and a red voxel at its
 /// end. From every voxel that a pixel looks at through it, the directions of the table meet its walls: to the
 /// table all are hidden.
-TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShowsWhereNothingIsHidden) {
+TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShowsInTheNormalisedComposite) {
   const glm::ivec3 dimensions(64);
   const glm::dvec3 end(44.0, 29.0, 40.0), along = glm::normalize(glm::dvec3(3.0, 1.0, 2.0));
   const Volume volume = makeVolume(dimensions, cubeTransform(dimensions), [&](int x, int y, int z) {
@@ -122,7 +118,7 @@ TEST_F(CullingTest, AHoleThatNoDirectionOfTheTableSeesShowsWhereNothingIsHidden)
   const FrameSettings settings{.size = {161, 161}, .method = SplatSettings{}};
   const glm::vec4 middle = renderer.render(camera, settings).pixels[80 * 161 + 80];
   EXPECT_GT(middle.r, 0.03f);  // the bottom's voxels have some of the walls' blue
-  EXPECT_LT(RendererStages(renderer).renderSums(camera, settings)[80 * 161 + 80].energy, kHidden);
+  EXPECT_LT(RendererStages(renderer).renderSums(camera, settings)[80 * 161 + 80].energy, settings.splats().cullThreshold);
 }
 
 TEST_F(CullingTest, WhatIsOutsideOfTheImageIsNotDrawn) {
@@ -152,7 +148,7 @@ TEST_F(CullingTest, CountsAddUp) {
   Renderer renderer(device(), volume, {.densityScale = 300.0}, {});
   Camera camera = framingCamera(volume, 35.0, 25.0, 1.5, {});
   camera.verticalFov /= 2.0;
-  renderer.render(camera, {.size = {120, 80}, .method = SplatSettings{.cullThreshold = kHidden}, .lod = 0.0f});
+  renderer.render(camera, {.size = {120, 80}, .method = kHiding, .lod = 0.0f});
   const CutCounts counts = renderer.cutCounts();
   EXPECT_GT(counts.outside, 0u);
   EXPECT_GT(counts.hidden, 0u);
@@ -178,8 +174,8 @@ TEST_F(CullingTest, NothingIsHiddenWhereTheTableCannotTell) {
   const Camera outside = framingCamera(volume, 35.0, 25.0, 1.0, {});
   Camera inside = outside;
   inside.position = inside.lookAt + 0.1 * (inside.position - inside.lookAt);
-  const FrameSettings hiding{.size = {64, 64}, .method = SplatSettings{.cullThreshold = kHidden}, .lod = 0.0f};
-  const FrameSettings sorted{.size = {64, 64}, .method = SplatSettings{.composite = Composite::Sorted, .cullThreshold = kHidden}};
+  const FrameSettings hiding{.size = {64, 64}, .method = kHiding, .lod = 0.0f};
+  const FrameSettings sorted{.size = {64, 64}, .method = SplatSettings{.composite = Composite::Sorted}};
   for (const auto& [camera, settings] : {std::pair(inside, hiding), {outside, sorted}}) {
     renderer.render(camera, settings);
     EXPECT_EQ(renderer.cutCounts().hidden, 0u);
@@ -194,7 +190,7 @@ TEST_F(CullingTest, NothingIsHiddenWhereTheTableCannotTell) {
 TEST_F(CullingTest, TheSameFrameTwiceIsBitIdentical) {
   const QualityScene scene = qualityScene("head", QualityColor::Skin, 48);
   const Camera camera = viewCamera(scene.volume, {});
-  const FrameSettings settings{.size = {100, 100}, .method = SplatSettings{.cullThreshold = kHidden}, .depth = true};
+  const FrameSettings settings{.size = {100, 100}, .method = kHiding, .depth = true};
   Renderer first(device(), scene.volume, scene.classification, {});
   const Image a = first.render(camera, settings);
   first.render(viewCamera(scene.volume, {.azimuth = 200.0}), {.size = {140, 60}, .method = SplatSettings{}});
@@ -207,8 +203,7 @@ TEST_F(CullingTest, SumsAreOfEverything) {
   const QualityScene scene = qualityScene("head", QualityColor::Skin, 32);
   const Camera camera = viewCamera(scene.volume, {});
   Renderer renderer(device(), scene.volume, scene.classification, {});
-  const auto sums =
-      RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .method = SplatSettings{.cullThreshold = kHidden}, .lod = 0.0f});
+  const auto sums = RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .method = kHiding, .lod = 0.0f});
   const auto whole =
       RendererStages(renderer).renderSums(camera, {.size = {60, 60}, .method = SplatSettings{.culling = false}, .lod = 0.0f});
   for (std::size_t i = 0; i < sums.size(); ++i) ASSERT_EQ(sums[i].depth, whole[i].depth);

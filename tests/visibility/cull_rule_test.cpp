@@ -71,7 +71,7 @@ TEST(CullRule, NothingIsHiddenFromInsideOrWithoutTheTable) {
   const auto depthOf = [](const Camera& camera, const FrameSettings& settings) {
     return cullRule(kDimensions, pixelRays(camera, settings.size, kTransform), settings).hiddenDepth;
   };
-  const FrameSettings settings{.size = {80, 60}, .method = SplatSettings{.cullThreshold = 1.0f / 512.0f}};
+  const FrameSettings settings{.size = {80, 60}, .method = SplatSettings{.composite = Composite::Additive}};
   EXPECT_NEAR(depthOf(cameraOf(false), settings), std::log(512.0), 1e-6);
   EXPECT_NEAR(depthOf(cameraOf(true), settings), std::log(512.0), 1e-6);
   Camera inside = cameraOf(false);
@@ -80,10 +80,9 @@ TEST(CullRule, NothingIsHiddenFromInsideOrWithoutTheTable) {
   inside.position = glm::dvec3(kTransform * glm::dvec4(15.0, 10.0, 39.7, 1.0));
   EXPECT_GT(depthOf(inside, settings), 0.0);
   for (const auto& without :
-       {FrameSettings{.size = {80, 60}, .method = SplatSettings{.culling = false, .cullThreshold = 0.1f}},
-        FrameSettings{.size = {80, 60}, .method = SplatSettings{.cullThreshold = 0.0f}},
-        FrameSettings{.size = {80, 60}, .method = SplatSettings{.composite = Composite::Sorted, .cullThreshold = 0.1f}},
-        FrameSettings{.size = {80, 60}}})
+       {FrameSettings{.size = {80, 60}, .method = SplatSettings{.composite = Composite::Additive, .culling = false}},
+        FrameSettings{.size = {80, 60}, .method = SplatSettings{.composite = Composite::Additive, .cullThreshold = 0.0f}},
+        FrameSettings{.size = {80, 60}, .method = SplatSettings{}}, FrameSettings{.size = {80, 60}}})
     EXPECT_EQ(depthOf(cameraOf(false), without), 0.0);
 }
 
