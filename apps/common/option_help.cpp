@@ -120,7 +120,7 @@ const std::vector<OptionHelp> kMethodHelp{
      true},
     {"cull-threshold",
      "Transmittance to the eye at which a ray of the gather ends, and below which the table hides blocks of splats with --composite "
-     "additive; 0 leaves nothing out [1/512]",
+     "additive; 0 leaves nothing out [1/512, and 1/4096 for splats]",
      true},
     {"hierarchy-filter", "Mean of its voxels' transmittances that a block has [geometric]", true},
     {"paper",

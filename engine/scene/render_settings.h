@@ -46,7 +46,7 @@ struct SplatSettings {
   bool culling = true;  ///< whether blocks outside of the image are left out; Sorted draws all voxels
   /// Blocks of which the table says that less than this part of their light reaches the eye are left out; 0 leaves out none. Only of
   /// Additive with `culling` (cullRule), and not of parts.
-  float cullThreshold = 1.0f / 512.0f;
+  float cullThreshold = 1.0f / 4096.0f;
 };
 
 struct FrameSettings {

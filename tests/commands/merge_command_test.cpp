@@ -62,7 +62,7 @@ TEST_F(MergeCommandTest, PartsOfOtherImagesAreRefused) {
   expectDifference("--orbit 10,20", "--camera-position");
   expectDifference("--albedo 0.5,0.5,0.5", "--albedo");
   expectDifference("--resolution 20", "volumes");
-  expectDifference("--composite additive", "--composite");
+  expectDifference("--composite additive", "--attenuation");  // which gathered parts have not
   renderPart("p1.exr", "1/256");
   std::string bytes = readBytes(folder / "p1.exr");
   const std::string version = exrAttribute(bytes, "freevoxels:version");

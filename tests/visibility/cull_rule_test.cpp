@@ -72,8 +72,8 @@ TEST(CullRule, NothingIsHiddenFromInsideOrWithoutTheTable) {
     return cullRule(kDimensions, pixelRays(camera, settings.size, kTransform), settings).hiddenDepth;
   };
   const FrameSettings settings{.size = {80, 60}, .method = SplatSettings{.composite = Composite::Additive}};
-  EXPECT_NEAR(depthOf(cameraOf(false), settings), std::log(512.0), 1e-6);
-  EXPECT_NEAR(depthOf(cameraOf(true), settings), std::log(512.0), 1e-6);
+  EXPECT_NEAR(depthOf(cameraOf(false), settings), std::log(4096.0), 1e-6);
+  EXPECT_NEAR(depthOf(cameraOf(true), settings), std::log(4096.0), 1e-6);
   Camera inside = cameraOf(false);
   inside.position = glm::dvec3(kTransform * glm::dvec4(15.0, 10.0, 39.3, 1.0));
   EXPECT_EQ(depthOf(inside, settings), 0.0);
