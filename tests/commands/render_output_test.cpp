@@ -76,7 +76,7 @@ TEST_F(RenderOutput, RecordsOptionsVersionsAndCamera) {
   const std::string bytes = render("--orthographic 1.5 --density-scale 12.5");
   EXPECT_EQ(exrAttribute(bytes, "freevoxels:density-scale"), "12.5");
   EXPECT_EQ(exrAttribute(bytes, "freevoxels:orthographic"), "1.5");
-  EXPECT_EQ(exrAttribute(bytes, "freevoxels:composite"), "normalised");
+  EXPECT_EQ(exrAttribute(bytes, "freevoxels:draw"), "gather");
   EXPECT_EQ(exrAttribute(bytes, "freevoxels:size"), "64x48");
   for (const char* name :
        {"freevoxels:version", "freevoxels:device", "freevoxels:driver", "freevoxels:look-at"})
