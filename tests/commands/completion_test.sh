@@ -23,7 +23,7 @@ expect "render turntable merge oracle compare info generate bake devices" ""
 expect "turntable" tu
 expect "--density-scale" render cloud.vdb --dens
 expect "--culling --cull-threshold" render cloud.vdb --cull
-expect "auto gather splats" render cloud.vdb --draw ""
+expect "gather splats" render cloud.vdb --draw ""
 expect "scatter" render cloud.vdb --shading s
 expect "--json" compare a.exr b.exr --j
 expect "completion_test.sh" render "completion_te"
