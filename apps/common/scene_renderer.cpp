@@ -151,10 +151,7 @@ void SceneRenderer::classify(const SceneDescription& description) {
 
 void SceneRenderer::complete(glm::ivec2 size) {
   context_->checkValidation();
-  std::vector<StageTime> times = kept_.takeTimings();
-  const std::lock_guard lock(lastFrameMutex_);
-  timings_ = std::move(times);
-  camera_ = keywordsOf(scene_.camera, size);
+  lastFrame_.set(kept_.takeTimings(), keywordsOf(scene_.camera, size));
 }
 
 template <typename Work>
@@ -201,16 +198,6 @@ Image SceneRenderer::renderTurn(const KeywordOptions& options, TurnStep step, co
 
 std::shared_ptr<const FrameTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress) {
   return draw(options, std::nullopt, depth, progress, &Renderer::renderOnDevice);
-}
-
-std::vector<StageTime> SceneRenderer::timings() const {
-  const std::lock_guard lock(lastFrameMutex_);
-  return timings_;
-}
-
-Json SceneRenderer::camera() const {
-  const std::lock_guard lock(lastFrameMutex_);
-  return camera_;
 }
 
 }  // namespace freevoxels

@@ -3,7 +3,6 @@
 
 #include <filesystem>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -12,6 +11,7 @@
 #include "apps/common/device_context.h"
 #include "apps/common/kept_renderer.h"
 #include "apps/common/keyword_options.h"
+#include "apps/common/last_frame.h"
 #include "apps/common/shared_volume.h"
 
 namespace freevoxels {
@@ -66,9 +66,9 @@ class SceneRenderer {
 
   /// Times of the stages that the last complete frame ran, those of data that it made included. Does not wait for a frame that is being
   /// drawn.
-  std::vector<StageTime> timings() const;
+  std::vector<StageTime> timings() const { return lastFrame_.timings(); }
   /// The camera of the last complete frame, as keywords that give it; an empty object before.
-  nlohmann::json camera() const;
+  nlohmann::json camera() const { return lastFrame_.camera(); }
   const std::shared_ptr<DeviceContext>& context() const { return context_; }
 
  private:
@@ -97,9 +97,7 @@ class SceneRenderer {
   std::optional<std::string> classification_;   ///< the fields of which scene_.classification was made
   KeptRenderer kept_;
 
-  mutable std::mutex lastFrameMutex_;  ///< guards the members below, of the last complete frame
-  std::vector<StageTime> timings_;
-  nlohmann::json camera_ = nlohmann::json::object();
+  LastFrame lastFrame_;
 };
 
 }  // namespace freevoxels

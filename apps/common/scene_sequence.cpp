@@ -131,9 +131,7 @@ Image SceneSequence::drawEmpty(const KeywordOptions& options, const Aovs& channe
   Image image = emptyImage({.size = size, .depth = channels.needDepth()});
   const Camera seen = view_ ? filmWith(*view_, description_, options.scene).camera : Camera{};
   addChannels(image, channels, seen);
-  const std::lock_guard lock(lastFrameMutex_);
-  timings_.clear();
-  camera_ = view_ ? keywordsOf(seen, size) : Json::object();
+  lastFrame_.set({}, view_ ? keywordsOf(seen, size) : Json::object());
   return image;
 }
 
@@ -153,9 +151,7 @@ Image SceneSequence::render(std::size_t frame, const KeywordOptions& options, co
     chooseView(paced);
     open(frame, paced);
     Image image = renderer_->render(options, channels, partOf(progress, begun, 1.0 - begun));
-    const std::lock_guard lock(lastFrameMutex_);
-    timings_ = renderer_->timings();
-    camera_ = renderer_->camera();
+    lastFrame_.set(renderer_->timings(), renderer_->camera());
     return image;
   } catch (const EmptyVolumeError& error) {
     if (!film_.isFilm()) throw;
@@ -218,16 +214,6 @@ std::vector<std::string> SceneSequence::save(std::span<const std::string> patter
   if (!problems.empty())
     fail(ErrorKind::Input, "{} of {} volumes could not be drawn: {}", problems.size(), files.size(), problems.front());
   return written;
-}
-
-std::vector<StageTime> SceneSequence::timings() const {
-  const std::lock_guard lock(lastFrameMutex_);
-  return timings_;
-}
-
-Json SceneSequence::camera() const {
-  const std::lock_guard lock(lastFrameMutex_);
-  return camera_;
 }
 
 }  // namespace freevoxels

@@ -3,7 +3,6 @@
 
 #include <functional>
 #include <memory>
-#include <mutex>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
@@ -11,6 +10,7 @@
 #include <vector>
 
 #include "apps/common/film_scenes.h"
+#include "apps/common/last_frame.h"
 #include "apps/common/scene_renderer.h"
 #include "apps/common/sequence.h"
 
@@ -48,8 +48,8 @@ class SceneSequence {
                                 const Progress& progress);
 
   /// As SceneRenderer has them.
-  std::vector<StageTime> timings() const;
-  nlohmann::json camera() const;
+  std::vector<StageTime> timings() const { return lastFrame_.timings(); }
+  nlohmann::json camera() const { return lastFrame_.camera(); }
   const std::shared_ptr<DeviceContext>& context() const { return context_; }
 
  private:
@@ -75,9 +75,7 @@ class SceneSequence {
   std::size_t opened_ = 0;             ///< the frame of `renderer_`
   std::unique_ptr<SceneRenderer> renderer_;
 
-  mutable std::mutex lastFrameMutex_;  ///< guards the members below, of the last complete frame
-  std::vector<StageTime> timings_;
-  nlohmann::json camera_ = nlohmann::json::object();
+  LastFrame lastFrame_;
 };
 
 }  // namespace freevoxels

@@ -1,68 +1,18 @@
-// The public interface. No exception type of the engine leaves it.
+// Contexts, volumes, frames and renderers. No exception type of the engine leaves the interface.
 
 #include <fmt/ranges.h>
 #include <volk.h>
 
 #include <cmath>
 
-#include "apps/common/frame_queue.h"
-#include "apps/common/program.h"
-#include "apps/common/scene_renderer.h"
-#include "apps/common/scene_sequence.h"
-#include "apps/common/scene_tools.h"
-#include "apps/library/include/freevoxels/freevoxels.h"
 #include "apps/library/include/freevoxels/vulkan.h"
-#include "engine/core/error.h"
-#include "engine/core/json_file.h"
-#include "engine/core/printable.h"
+#include "apps/library/translation.h"
 #include "engine/volume/volume_of_scalars.h"
 #include "engine/vulkan/device_requirements.h"
 
 namespace freevoxels::v1 {
 
 namespace {
-
-using Json = nlohmann::json;
-
-ErrorKind kindOf(freevoxels::ErrorKind kind) {
-  switch (kind) {
-    case freevoxels::ErrorKind::Usage: return ErrorKind::Usage;
-    case freevoxels::ErrorKind::Input: return ErrorKind::Input;
-    case freevoxels::ErrorKind::Output: return ErrorKind::Output;
-    case freevoxels::ErrorKind::Device: return ErrorKind::Device;
-    case freevoxels::ErrorKind::OutOfMemory: return ErrorKind::OutOfMemory;
-    default: return ErrorKind::Internal;
-  }
-}
-
-/// The text with its parameters as keys of a scene: "memory-limit", "draw": "splats".
-std::string withSceneKeys(std::string_view text) {
-  return spelled(text, [](std::string_view name, std::string_view value) {
-    return value.empty() ? fmt::format("\"{}\"", name) : fmt::format("\"{}\": \"{}\"", name, value);
-  });
-}
-
-/// Calls `work` and converts the engine's errors to those of this interface.
-template <typename Work>
-auto translated(const Work& work) {
-  try {
-    return work();
-  } catch (const freevoxels::Error& error) {
-    throw Error(kindOf(error.kind()), printable(withSceneKeys(error.text())), error.parameters());
-  } catch (const InternalError& error) {
-    throw Error(ErrorKind::Internal, fmt::format("internal error, please report it: {}", error.what()));
-  } catch (const FrameCancelled&) {
-    throw Error(ErrorKind::Cancelled, "the frame was cancelled before it was complete");
-  }
-}
-
-Json parseScene(std::string_view text) {
-  if (isTooDeep(text)) fail(freevoxels::ErrorKind::Usage, "a scene is nested at most {} deep, and this one is deeper", kDeepestJson);
-  Json scene = parseJson("scene", "inline", text);
-  constexpr std::size_t kLongestQuote = 200;
-  if (!scene.is_object()) fail(freevoxels::ErrorKind::Usage, "a scene is a JSON object, as '{{\"size\": [800, 600]}}', not '{}'", printablePart(text, kLongestQuote));
-  return scene;
-}
 
 freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement) {
   const auto& [x, y, z] = dimensions;
@@ -79,34 +29,6 @@ freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> di
                          latticeTransform(vector(placement.spacing), vector(placement.origin)), false);
 }
 
-Image imageOf(freevoxels::Image image) {
-  const float* const first = reinterpret_cast<const float*>(image.pixels.data());
-  return {image.size.x, image.size.y, {first, first + 4 * image.pixels.size()}, std::move(image.depth)};
-}
-
-std::vector<std::pair<std::string, double>> pairsOf(const std::vector<StageTime>& times) {
-  std::vector<std::pair<std::string, double>> pairs;
-  for (const StageTime& time : times) pairs.emplace_back(time.name, time.milliseconds);
-  return pairs;
-}
-
-/// Sentences that are told while frames are drawn, each once.
-class Told {
- public:
-  void add(std::string sentence) {
-    const std::lock_guard lock(mutex_);
-    if (std::ranges::find(sentences_, sentence) == sentences_.end()) sentences_.push_back(std::move(sentence));
-  }
-  std::vector<std::string> all() const {
-    const std::lock_guard lock(mutex_);
-    return sentences_;
-  }
-
- private:
-  mutable std::mutex mutex_;
-  std::vector<std::string> sentences_;
-};
-
 DeviceOptions limited(int mebibytes) {
   DeviceOptions options;
   if (mebibytes < 0) fail(freevoxels::ErrorKind::Usage, "a limit of {} MiB on device memory is below 0: 0 is no limit", mebibytes);
@@ -116,14 +38,6 @@ DeviceOptions limited(int mebibytes) {
 
 }  // namespace
 
-struct Context::State {
-  std::shared_ptr<DeviceContext> context;
-};
-
-struct Volume::State {
-  std::shared_ptr<const SharedVolume> volume;
-};
-
 struct Frame::State {
   std::shared_ptr<SubmittedFrame> frame;
 };
@@ -131,18 +45,6 @@ struct Frame::State {
 struct Renderer::State {
   SceneRenderer renderer;
   FrameQueue queue;  // last, as it draws with `renderer`
-};
-
-struct Sequence::State {
-  State(const std::vector<std::string>& names, Json scene, std::shared_ptr<DeviceContext> context)
-      : sequence(names, std::move(scene),
-                 [this](const std::string& sentence, bool isWarning) {
-                   (isWarning ? warnings : remarks).add(printable(withSceneKeys(sentence)));
-                 },
-                 std::move(context)) {}
-
-  Told warnings, remarks;
-  SceneSequence sequence;  // last, as it tells the others
 };
 
 Context::Context(const ContextOptions& options)
@@ -332,110 +234,6 @@ std::vector<std::pair<std::string, double>> Renderer::timings() const {
 
 std::string Renderer::device() const {
   return state_->renderer.context()->device->description().name;
-}
-
-Sequence::Sequence(const Context& context, const std::vector<std::string>& names, std::string_view scene)
-    : state_(translated([&] { return std::make_unique<State>(names, parseScene(scene), context.state_->context); })) {}
-
-Sequence::Sequence(const std::vector<std::string>& names, std::string_view scene)
-    : state_(translated([&] { return std::make_unique<State>(names, parseScene(scene), nullptr); })) {}
-
-Sequence::~Sequence() = default;
-Sequence::Sequence(Sequence&&) noexcept = default;
-Sequence& Sequence::operator=(Sequence&&) noexcept = default;
-
-std::size_t Sequence::size() const {
-  return state_->sequence.volumes().size();
-}
-
-std::vector<std::string> Sequence::files() const {
-  std::vector<std::string> files;
-  for (const NumberedVolume& volume : state_->sequence.volumes()) files.push_back(volume.file);
-  return files;
-}
-
-std::vector<double> Sequence::numbers() const {
-  std::vector<double> numbers;
-  for (const NumberedVolume& volume : state_->sequence.volumes()) numbers.push_back(volume.number.value);
-  return numbers;
-}
-
-Image Sequence::render(std::size_t frame, std::string_view scene, bool withDepth, const Progress& progress) {
-  return translated([&] {
-    if (frame >= size()) fail(freevoxels::ErrorKind::Usage, "there is no frame {}: the sequence has {}, numbered from 0", frame, size());
-    SceneSequence& sequence = state_->sequence;
-    return imageOf(sequence.render(frame, *sequence.read(parseScene(scene)), {.depth = withDepth}, progress));
-  });
-}
-
-std::vector<std::string> Sequence::save(const std::vector<std::string>& images, std::string_view scene, bool skipExisting,
-                                        const Progress& progress) {
-  return translated([&] { return state_->sequence.save(images, parseScene(scene), skipExisting, progress); });
-}
-
-std::string Sequence::camera() const {
-  return state_->sequence.camera().dump();
-}
-
-std::vector<std::pair<std::string, double>> Sequence::timings() const {
-  return pairsOf(state_->sequence.timings());
-}
-
-std::string Sequence::device() const {
-  return state_->sequence.context()->device->description().name;
-}
-
-std::vector<std::string> Sequence::warnings() const {
-  return state_->warnings.all();
-}
-
-std::vector<std::string> Sequence::remarks() const {
-  return state_->remarks.all();
-}
-
-void save(const std::filesystem::path& file, const Image& image, std::string_view scene) {
-  translated([&] {
-    const std::size_t pixels = std::size_t(std::max(image.width, 0)) * std::size_t(std::max(image.height, 0));
-    if (pixels == 0 || image.pixels.size() != 4 * pixels || (!image.depth.empty() && image.depth.size() != pixels))
-      fail(freevoxels::ErrorKind::Input, "an image of {} x {} pixels has {} values and {} depths: it needs 4 values, and 1 depth or none, a pixel",
-           image.width, image.height, image.pixels.size(), image.depth.size());
-    freevoxels::Image copy{.size = {image.width, image.height}, .pixels = std::vector<glm::vec4>(pixels), .depth = image.depth};
-    for (std::size_t i = 0; i < pixels; ++i)
-      copy.pixels[i] = {image.pixels[4 * i], image.pixels[4 * i + 1], image.pixels[4 * i + 2], image.pixels[4 * i + 3]};
-    saveImage(file.string(), copy, parseScene(scene));
-  });
-}
-
-std::string loadScene(const std::filesystem::path& file) {
-  return translated([&] { return freevoxels::loadScene(file).dump(2, ' ', false, Json::error_handler_t::replace); });
-}
-
-void saveScene(const std::filesystem::path& file, std::string_view scene) {
-  translated([&] { freevoxels::saveScene(file, parseScene(scene)); });
-}
-
-void bake(const std::filesystem::path& volume, const std::filesystem::path& file, std::string_view scene, const Progress& progress) {
-  translated([&] { bakeFile(volume.string(), file.string(), parseScene(scene), {}, progress); });
-}
-
-void bake(const Volume& volume, const std::filesystem::path& file, std::string_view scene, const Progress& progress) {
-  translated([&] { bakeShared(*volume.state_->volume, file.string(), parseScene(scene), progress); });
-}
-
-std::string info(const std::filesystem::path& volume, std::string_view scene) {
-  return translated([&] { return infoOf(volume.string(), parseScene(scene)).dump(2, ' ', false, Json::error_handler_t::replace); });
-}
-
-std::string devices() {
-  return translated([&] { return toJson(findDevices()).dump(2, ' ', false, Json::error_handler_t::replace); });
-}
-
-void merge(const std::vector<std::string>& parts, const std::vector<std::string>& images, std::string_view scene) {
-  translated([&] { mergeFiles(parts, images, parseScene(scene)); });
-}
-
-std::string version() {
-  return programVersion();
 }
 
 }  // namespace freevoxels::v1

@@ -123,6 +123,11 @@ std::string layOut(const OrderedJson& value, int depth = 0) {
   return fmt::format("{}\n{}\n{}{}", list ? "[" : "{", fmt::join(lines, ",\n"), indent.substr(2), list ? "]" : "}");
 }
 
+/// Whether the value is a word of earlier versions for what need not be given: "auto" was the default, "exact" is what gathering does.
+bool isFormerDefault(const SceneField& field, const Json& value) {
+  return (field.name == "draw" && value == "auto") || (field.name == "attenuation" && (value == "auto" || value == "exact"));
+}
+
 }  // namespace
 
 template <typename... Args>
@@ -161,11 +166,6 @@ const SceneField& SceneFile::find(const std::string& section, const std::string&
 
 bool SceneFile::hasVolume() const {
   return root_->contains("input") && root_->at("input").contains("volume");
-}
-
-/// Whether the value is a word of earlier versions for what need not be given: "auto" was the default, "exact" is what gathering does.
-static bool isFormerDefault(const SceneField& field, const Json& value) {
-  return (field.name == "draw" && value == "auto") || (field.name == "attenuation" && (value == "auto" || value == "exact"));
 }
 
 void SceneFile::applyTo(SceneDescription& description, const std::function<bool(const SceneField&)>& wanted) const {

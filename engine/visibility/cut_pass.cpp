@@ -88,10 +88,7 @@ CutPass::CutPass(const Device& device, AttenuationCode code)
       scan_(makeComputePipeline(device, shaders::compact_scan)),
       write_(makeComputePipeline(device, shaders::cut_write)),
       frame_(device, sizeof(shader::CutFrame), MemoryUse::Device, "cut frame", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
-      counts_(device, sizeof(shader::CutCounts), MemoryUse::Device, "cut counts") {
-  for (const std::uint32_t voxels : {0u, 1u})
-    select_[voxels] = makeComputePipeline(device, shaders::cut_select, {std::uint32_t(code), voxels, 0u});
-}
+      counts_(device, sizeof(shader::CutCounts), MemoryUse::Device, "cut counts") {}
 
 void CutPass::makeRoom(const CutInputs& inputs) {
   const std::uint64_t most = mostBlocks_ = mostDrawn(inputs);
@@ -143,9 +140,6 @@ void CutPass::record(Commands& commands, const CutInputs& inputs) {
 
 void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::span<const Level> levels) {
   const Buffer& anyBuffer = frame_;
-  if (inputs.candidates != nullptr && !selectCandidates_[0].exists())
-    for (const std::uint32_t voxels : {0u, 1u})
-      selectCandidates_[voxels] = makeComputePipeline(device_, shaders::cut_select, {std::uint32_t(code_), voxels, 1u});
   for (const Level& level : levels | std::views::reverse) {
     const std::array<Binding, 9> bindings{&frame_,
                                           level.parents,
@@ -156,8 +150,8 @@ void CutPass::recordSelect(Commands& commands, const CutInputs& inputs, std::spa
                                           &counts_,
                                           inputs.table ? &inputs.table->planeAddresses : &anyBuffer,
                                           level.children != nullptr ? level.children : &anyBuffer};
-    const std::size_t voxels = level.push.level == 0 ? 1 : 0;
-    const Pipeline& select = level.children != nullptr ? selectCandidates_[voxels] : select_[voxels];
+    const Pipeline select =
+        makeComputePipeline(device_, shaders::cut_select, {std::uint32_t(code_), level.push.level == 0, level.children != nullptr});
     if (level.push.slotCount > 0)
       commands.dispatchLinear(select, bindings, level.push, groupsFor(level.push.slotCount) * shader::kCutThreads);
     commands.barrier(kComputeStage, kComputeStage);

@@ -54,8 +54,6 @@ class CutPass {
 
   const Device& device_;
   AttenuationCode code_;
-  std::array<Pipeline, 2> select_;            ///< for blocks or voxels
-  std::array<Pipeline, 2> selectCandidates_;  ///< among candidates, made when it is first needed
   Pipeline scan_, write_;
   Buffer frame_;                ///< shader::CutFrame
   Buffer opened_;               ///< a bit for each block above the voxels, as in cut_select.comp

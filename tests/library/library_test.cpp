@@ -15,6 +15,7 @@
 #include <utility>
 #include <vector>
 
+#include "tests/library/expect_error.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels {
@@ -22,19 +23,6 @@ namespace {
 
 constexpr const char* kAlongZ =
     R"({"camera-position": [9.5, 9.5, 100], "look-at": [9.5, 9.5, 0], "up": [0, 1, 0], "orthographic": 20, "size": [40, 40]})";
-
-/// An error's kind, a part of its sentence, and the keys that it names.
-template <typename Work>
-void expectError(v1::ErrorKind kind, const std::string& part, const Work& work, const std::vector<std::string>& parameters = {}) {
-  try {
-    work();
-    ADD_FAILURE() << "no error, but expected: " << part;
-  } catch (const v1::Error& error) {
-    EXPECT_EQ(error.kind(), kind) << error.what();
-    EXPECT_NE(std::string(error.what()).find(part), std::string::npos) << error.what();
-    EXPECT_EQ(error.parameters(), parameters) << error.what();
-  }
-}
 
 const v1::Volume& cloud() {
   static const v1::Volume volume = v1::Volume::open("procedural:cloud", R"({"resolution": 32})");
