@@ -9,6 +9,7 @@
 #include "apps/library/translation.h"
 #include "engine/volume/volume_of_scalars.h"
 #include "engine/vulkan/device_requirements.h"
+#include "engine/vulkan/queue.h"
 
 namespace freevoxels::v1 {
 
@@ -69,8 +70,8 @@ Context adopt(const AdoptedDevice& adopted, int memoryLimit) {
                                            .queueFamily = adopted.queueFamily,
                                            .features = adopted.features,
                                            .queueMutex = adopted.queueMutex};
-    return Context(std::make_shared<Context::State>(
-        Context::State{std::make_shared<DeviceContext>(adopted.instance, device, limited(memoryLimit))}));
+    return Context(
+        std::make_shared<Context::State>(Context::State{std::make_shared<DeviceContext>(adopted.instance, device, limited(memoryLimit))}));
   });
 }
 
@@ -90,9 +91,8 @@ void enableRequiredFeatures(VkPhysicalDeviceFeatures2& chain) {
 }
 
 Volume Volume::open(const Context& context, const std::filesystem::path& file, std::string_view scene) {
-  return translated([&] {
-    return Volume(std::make_shared<const State>(openVolume(file.string(), parseScene(scene), context.state_->context)));
-  });
+  return translated(
+      [&] { return Volume(std::make_shared<const State>(openVolume(file.string(), parseScene(scene), context.state_->context))); });
 }
 
 Volume Volume::open(const std::filesystem::path& file, std::string_view scene) {
@@ -100,10 +100,8 @@ Volume Volume::open(const std::filesystem::path& file, std::string_view scene) {
 }
 
 Volume Volume::copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement) {
-  return translated([&] {
-    return Volume(std::make_shared<const State>(
-        std::make_shared<const SharedVolume>(volumeOf(values, dimensions, placement))));
-  });
+  return translated(
+      [&] { return Volume(std::make_shared<const State>(std::make_shared<const SharedVolume>(volumeOf(values, dimensions, placement)))); });
 }
 
 std::array<int, 3> Volume::dimensions() const {

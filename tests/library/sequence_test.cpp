@@ -77,11 +77,9 @@ TEST_F(SequenceTest, SaysWhatItKnows) {
 TEST_F(SequenceTest, EmptyAndDamagedFramesAreThoseOfTheCommandLine) {
   test::writeBytes(folder_ / "f_3.vdb", "no volume");
   v1::Sequence sequence({path("f_#.vdb")}, R"({"size": [32, 24]})");
-  expectError(
-      v1::ErrorKind::Input, "f_3.vdb", [&] { sequence.render(2); }, std::nullopt);
+  expectRefused(v1::ErrorKind::Input, "f_3.vdb", [&] { sequence.render(2); });
   EXPECT_EQ(sequence.render(3).width, 32);
-  expectError(
-      v1::ErrorKind::Input, "1 of 4 volumes could not be drawn", [&] { sequence.save({path("i_#.png")}); }, std::nullopt);
+  expectRefused(v1::ErrorKind::Input, "1 of 4 volumes could not be drawn", [&] { sequence.save({path("i_#.png")}); });
   EXPECT_FALSE(std::filesystem::exists(folder_ / "i_3.png"));
   EXPECT_TRUE(std::filesystem::exists(folder_ / "i_4.png"));
 }
@@ -111,21 +109,17 @@ TEST_F(SequenceTest, ProgressGrowsAndAbandons) {
 TEST_F(SequenceTest, WhatMakesNoSenseIsNamed) {
   using enum v1::ErrorKind;
   const auto make = [this](const char* name, const char* scene) { return [=, this] { v1::Sequence({path(name)}, scene); }; };
-  expectError(Input, "there is no frame of", make("x_#.vdb", "{}"), std::nullopt);
-  expectError(
-      Usage, "there is no volume to draw", [] { v1::Sequence({}, "{}"); }, std::nullopt);
-  expectError(Usage, R"("frames" takes A-B)", make("f_#.vdb", R"({"frames": "1,2"})"), std::nullopt);
-  expectError(Usage, R"("frames" takes A-B)", make("f_#.vdb", R"({"frames": [1, 2]})"), std::nullopt);
-  expectError(Usage, R"("fixed-view" takes true or false)", make("f_#.vdb", R"({"fixed-view": 1})"), std::nullopt);
-  expectError(Usage, R"(did you mean "density-scale")", make("f_#.vdb", R"({"densty-scale": 1})"), std::nullopt);
+  expectRefused(Input, "there is no frame of", make("x_#.vdb", "{}"));
+  expectRefused(Usage, "there is no volume to draw", [] { v1::Sequence({}, "{}"); });
+  expectRefused(Usage, R"("frames" takes A-B)", make("f_#.vdb", R"({"frames": "1,2"})"));
+  expectRefused(Usage, R"("frames" takes A-B)", make("f_#.vdb", R"({"frames": [1, 2]})"));
+  expectRefused(Usage, R"("fixed-view" takes true or false)", make("f_#.vdb", R"({"fixed-view": 1})"));
+  expectRefused(Usage, R"(did you mean "density-scale")", make("f_#.vdb", R"({"densty-scale": 1})"));
   v1::Sequence sequence({path("f_#.vdb")});
-  expectError(
-      Usage, "there is no frame 3: the sequence has 3", [&] { sequence.render(3); }, std::nullopt);
-  expectError(
-      Usage, R"("memory-limit" has no effect here)", [this] { v1::Sequence(v1::Context(), {path("f_#.vdb")}, R"({"memory-limit": 9})"); },
-      std::nullopt);
-  expectError(
-      Usage, "put a run of #", [&] { sequence.save({path("a.png")}); }, std::nullopt);
+  expectRefused(Usage, "there is no frame 3: the sequence has 3", [&] { sequence.render(3); });
+  expectRefused(Usage, R"("memory-limit" has no effect here)",
+                [this] { v1::Sequence(v1::Context(), {path("f_#.vdb")}, R"({"memory-limit": 9})"); });
+  expectRefused(Usage, "put a run of #", [&] { sequence.save({path("a.png")}); });
 }
 
 }  // namespace
