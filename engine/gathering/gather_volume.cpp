@@ -21,18 +21,21 @@ namespace freevoxels {
 
 namespace {
 
-/// The radiance of a stored source term that equals the stored extinction: 1, or more if half floats could
-/// not hold the brightest voxel. Lights are as bright as at the least distance that counts.
+/// The radiance of a stored source term that equals the stored extinction: 1, or more if half floats could not hold the brightest voxel.
+/// Lights are as bright as at the least distance that counts. With emission it is a multiple by a power of two of the unit in which
+/// voxels have their emission, which is then packed again without an error.
 double sourceUnit(const DeviceVolume& volume, const Lighting* lighting) {
-  double brightest = volume.emissionUnit * kBrightest * volume.voxelSize;
+  const double emission = volume.emissionUnit * kStoredDepth * volume.voxelSize;
+  double brightest = emission;
   if (lighting != nullptr) {
     for (const Light& light : lighting->lights) {
       const double nearest = light.atInfinity ? 1.0 : double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize;
       const double color = std::max({light.color.r, light.color.g, light.color.b});
-      brightest += light.intensity * color / (4.0 * std::numbers::pi * nearest);
+      brightest += light.intensity * color / (4.0 * std::numbers::pi * nearest) * kStoredDepth / kBrightest;
     }
   }
-  return std::max(brightest * kStoredDepth / kBrightest, 1.0);
+  const double least = std::max(brightest, 1.0);
+  return emission > 0.0 ? std::ldexp(emission, int(std::ceil(std::log2(least / emission)))) : least;
 }
 
 bool dependsOnView(const Lighting& lighting) {
