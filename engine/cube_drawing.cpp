@@ -29,36 +29,36 @@ FrameSettings exactSettings(const FrameSettings& wanted, bool octree) {
 
 }  // namespace
 
-/// Where the volume is lit, its emission lights it, too.
-void CubeDrawing::State::prepareEmissionLight(bool lit, const Progress& progress) {
-  if (!classification.emission || lit == (classification.emissionLight != nullptr)) return;
-  if (lit && !emissionLight) {
-    const StageTimer timer(times, "light of emission");
+/// The light of all lights together; null if there is none.
+const ScatteringSolver* CubeDrawing::State::solveScattering(const FrameSettings& wanted, const Progress& progress) {
+  if (!wanted.lighting || !hasScatteredLight(*wanted.lighting, brightestLight(classification, source->outline()) > 0.0)) return nullptr;
+  if (!scattering) {
+    const StageTimer timer(times, "scattering medium");
     const CubeLevel& base = levelAt(0);
-    const glm::ivec3 dimensions = base.outline().dimensions;
-    EmissionCells cells(dimensions, base.outline().indexToWorld);
-    const bool shines = brightestLight(classification, base.outline()) > 0.0;
-    for (std::size_t i = 0; shines && i < base.cubes.size(); ++i) {
-      if (progress) progress("reading emission", double(i) / double(base.cubes.size()));
-      const VoxelRange cube = cubeVoxels(base.cubes[i], dimensions);
-      cells.add(base.read(cube), cube.first, classification);
+    const Volume& outline = base.outline();
+    ScatteringMedium medium(outline.dimensions, outline.indexToWorld);
+    for (std::size_t i = 0; i < base.cubes.size(); ++i) {
+      if (progress) progress("reading cells", double(i) / double(base.cubes.size()));
+      const VoxelRange cube = cubeVoxels(base.cubes[i], outline.dimensions);
+      medium.add(base.read(cube), cube.first, classification);
     }
-    emissionLight = std::make_shared<const EmissionLight>(cells);
+    scattering.emplace(device, std::move(medium));
   }
-  classification.emissionLight = lit ? emissionLight : nullptr;
-  levels.clear();  // which keep the classification
+  scattering->solve(*wanted.lighting, times, progress);
+  return &*scattering;
 }
 
 /// The sums of no sample, in the form in which samples are added.
 FixedSums CubeDrawing::State::emptySums(const Frame& frame, const FrameSettings& wanted) {
   const DeviceVolume& volume = levelAt(0).onDevice;
-  FixedSums sums = sumsOfSamples(frame.lattice, classification.isPost(levelAt(0).outline()),
-                                 sumsLayout(volume, makeFrameConstants(device, volume, table, frame.camera, frame.settings), wanted));
+  FrameConstants constants = makeFrameConstants(device, volume, table, frame.camera, frame.settings);
+  if (frame.scattered != nullptr) constants.scatteredRadiance = frame.scattered->brightest();
+  FixedSums sums = sumsOfSamples(frame.lattice, classification.isPost(levelAt(0).outline()), sumsLayout(volume, constants, wanted));
   sums.method += ", cube by cube";
   return sums;
 }
 
-/// Emission, ambient light and distances are those of the first group.
+/// Emission, scattered light and distances are those of the first group.
 CubeDrawing::State::LightGroups CubeDrawing::State::groupLights(const FrameSettings& wanted) const {
   constexpr std::size_t kAtOnce = shader::kMaxSampleLights;
   const Volume& outline = source->outline();
@@ -79,58 +79,51 @@ CubeDrawing::State::LightGroups CubeDrawing::State::groupLights(const FrameSetti
 }
 
 CubeDrawing::State::Frame CubeDrawing::State::frameOfGroup(const Camera& camera, const LightGroups& groups, std::size_t group,
-                                                           const Progress& progress) {
+                                                           const ScatteringSolver* scattered, const Progress& progress) {
   const FrameSettings& settings = groups.settings[group];
   Frame frame{.camera = camera,
               .settings = settings,
               .classification = group == 0 ? classification : dark,
               .allLights = groups.all,
               .firstLight = group * shader::kMaxSampleLights,
+              .scattered = scattered,
               .progress = progress,
               .lattice = latticeOf(camera, settings)};
   frame.rows = {0, frame.lattice.samples.y};
   return frame;
 }
 
-void CubeDrawing::State::begin(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
+void CubeDrawing::State::begin(const Camera& camera, const FrameSettings& wanted) {
   checkCamera(camera);
   checkFrameFits(device, wanted);
   times.clear();
   cubesRead.clear();
-  prepareEmissionLight(wanted.lighting.has_value(), progress);
   dark = classification;
   dark.emission.reset();
-  dark.emissionLight = nullptr;
   // Otherwise voxels without emission would be classified after interpolation.
   if (classification.emission) dark.order = ClassificationOrder::Pre;
 }
 
-std::optional<std::string> CubeDrawing::whyNot(glm::ivec3 dimensions, const FrameSettings& settings) {
+std::optional<std::string> CubeDrawing::whyNot(const FrameSettings& settings) {
   if (!settings.gathers()) return "splats are drawn of the whole volume";
   if (!settings.lighting) return {};
-  const Lighting& lighting = *settings.lighting;
   if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";
-  if (lighting.hasAmbient() && ambientCellEdge(dimensions, lighting.phaseG != 0.0) > kCubeEdge)
-    return "the volume is too large for the cells of ambient light";
   return {};
 }
 
 CubeDrawing::CubeDrawing(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
                          const TableSettings& table)
-    : state_(new State{.device = device,
-                       .source = std::move(source),
-                       .classification = classification,
-                       .table = table,
-                       .emissionLight = classification.emissionLight}) {}
+    : state_(new State{.device = device, .source = std::move(source), .classification = classification, .table = table}) {}
 
 CubeDrawing::~CubeDrawing() = default;
 
 std::shared_ptr<const FrameTargets> CubeDrawing::draw(const Camera& camera, const FrameSettings& wanted, const Progress& progress) try {
   State& state = *state_;
-  state.begin(camera, wanted, progress);
+  state.begin(camera, wanted);
+  const ScatteringSolver* const scattered = state.solveScattering(wanted, progress);
   const State::LightGroups groups = state.groupLights(wanted);
   const auto drawGroup = [&](std::size_t group, const FrameTargets& targets) {
-    const State::Frame frame = state.frameOfGroup(camera, groups, group, progress);
+    const State::Frame frame = state.frameOfGroup(camera, groups, group, scattered, progress);
     state.march(frame);
     state.resolve(frame, targets);
   };
@@ -158,11 +151,12 @@ std::shared_ptr<const FrameTargets> CubeDrawing::draw(const Camera& camera, cons
 
 FixedSums CubeDrawing::drawShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) try {
   State& state = *state_;
-  state.begin(camera, wanted, progress);
+  state.begin(camera, wanted);
+  const ScatteringSolver* const scattered = state.solveScattering(wanted, progress);
   const State::LightGroups groups = state.groupLights(wanted);
   FixedSums sums;
   for (std::size_t group = 0; group < groups.settings.size(); ++group) {
-    State::Frame frame = state.frameOfGroup(camera, groups, group, progress);
+    State::Frame frame = state.frameOfGroup(camera, groups, group, scattered, progress);
     frame.rows = rowsOfPart(frame.lattice, part);
     if (group == 0) sums = state.emptySums(frame, wanted);
     if (frame.rows.x == frame.rows.y) continue;
@@ -174,6 +168,10 @@ FixedSums CubeDrawing::drawShares(const Camera& camera, const FrameSettings& wan
 } catch (const Error& error) {
   if (error.kind() != ErrorKind::OutOfMemory) throw;
   throw state_->withNeed(error, camera, wanted);
+}
+
+const ScatteringSolver* CubeDrawing::scattered() const {
+  return state_->scattering ? &*state_->scattering : nullptr;
 }
 
 const std::vector<StageTime>& CubeDrawing::timings() const {

@@ -22,13 +22,15 @@
 
 namespace freevoxels {
 
+class ScatteringSolver;
+
 class CubeDrawing {
  public:
   /// Cubes are read with this number of voxels around them: enough for the light of surfaces, and whole bricks.
   static constexpr int kHalo = 8;
 
   /// Why frames of a volume cannot be drawn cube by cube, as a clause; nothing if they can.
-  static std::optional<std::string> whyNot(glm::ivec3 dimensions, const FrameSettings& settings);
+  static std::optional<std::string> whyNot(const FrameSettings& settings);
 
   /// Frames must be such that whyNot() has no reason.
   CubeDrawing(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
@@ -43,6 +45,8 @@ class CubeDrawing {
 
   /// Of the last frame, with the light that it swept.
   const std::vector<StageTime>& timings() const;
+  /// The light of frames that have it; null if none had.
+  const ScatteringSolver* scattered() const;
   /// Memory of a cube.
   VolumeMemory memory() const;
   /// How many cubes the last frame read, by level.

@@ -10,7 +10,6 @@
 #include "engine/cube_drawing.h"
 #include "engine/cube_level.h"
 #include "engine/gathering/gather_pass.h"
-#include "engine/volume/emission_light.h"
 
 namespace freevoxels {
 
@@ -24,10 +23,10 @@ struct CubeDrawing::State {
   std::shared_ptr<const VolumeSource> source;
   Classification classification;
   TableSettings table;
-  std::shared_ptr<const EmissionLight> emissionLight;  ///< null until a frame is lit
   std::map<int, CubeLevel> levels = {};
   std::optional<GatherPass> gather = {};
   Classification dark = {};  ///< `classification` without emission, which is drawn with the first group of lights
+  std::optional<ScatteringSolver> scattering = {};
   TargetPool targetPool = {};
   std::vector<StageTime> times = {};
   std::vector<std::size_t> cubesRead = {};
@@ -39,12 +38,14 @@ struct CubeDrawing::State {
     const Classification& classification;
     std::span<const Light> allLights;
     std::size_t firstLight;  ///< of those of `settings` among all lights
+    const ScatteringSolver* scattered;  ///< for the light of all groups; null without such light. Its light is drawn with the first one
+    bool isFirst() const { return firstLight == 0; }
     const Progress& progress;
     shader::GatherFrame lattice;  ///< of the whole volume
     glm::ivec2 rows{0};           ///< first and end of the rows of samples that are drawn
   };
 
-  void prepareEmissionLight(bool lit, const Progress& progress);
+  const ScatteringSolver* solveScattering(const FrameSettings& wanted, const Progress& progress);
   CubeLevel& levelAt(int level) { return levels.try_emplace(level, source, level, classification).first->second; }
   /// An image is the sum of those of groups of lights.
   struct LightGroups {
@@ -52,8 +53,9 @@ struct CubeDrawing::State {
     std::vector<FrameSettings> settings;  ///< of each group
   };
   LightGroups groupLights(const FrameSettings& wanted) const;
-  Frame frameOfGroup(const Camera& camera, const LightGroups& groups, std::size_t group, const Progress& progress);
-  void begin(const Camera& camera, const FrameSettings& wanted, const Progress& progress);
+  Frame frameOfGroup(const Camera& camera, const LightGroups& groups, std::size_t group, const ScatteringSolver* scattered,
+                     const Progress& progress);
+  void begin(const Camera& camera, const FrameSettings& wanted);
   FixedSums emptySums(const Frame& frame, const FrameSettings& wanted);
   std::uint64_t mostBricks();
   std::uint64_t leastBytes(const Camera& camera, const FrameSettings& wanted);

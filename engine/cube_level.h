@@ -3,13 +3,12 @@
 // whole level.
 
 #include <memory>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "engine/attenuation/plane_sweep.h"
-#include "engine/lighting/ambient_pass.h"
 #include "engine/octree/device_volume.h"
+#include "engine/scene/lighting.h"
 
 namespace freevoxels {
 
@@ -25,8 +24,7 @@ inline VoxelRange cubeVoxels(glm::ivec3 cell, glm::ivec3 dimensions) {
 struct CubeLevel {
   SourceLevel source;
   DeviceVolume onDevice;
-  std::vector<glm::ivec3> cubes;  ///< in and beside which there are voxels with data
-  std::optional<AmbientPass> ambient;
+  std::vector<glm::ivec3> cubes;                    ///< in and beside which there are voxels with data
   std::vector<std::unique_ptr<SweptLight>> lights;  ///< of all lights of the last frame
 
   CubeLevel(std::shared_ptr<const VolumeSource> source, int level, const Classification& classification);
@@ -35,9 +33,6 @@ struct CubeLevel {
 
   /// Sweeps `wanted` lights; keeps what was swept for those that stand. Fails with ErrorKind::OutOfMemory.
   void prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times, const Progress& progress);
-  /// Sweeps ambient light if it or, with a phase function, the eye is another than before.
-  void prepareAmbient(const Device& device, const Lighting& lighting, const RaySource& eye, std::vector<StageTime>& times,
-                      const Progress& progress);
 };
 
 }  // namespace freevoxels

@@ -109,9 +109,7 @@ void CubeDrawing::State::drawLevel(const Frame& frame, int level, std::span<cons
   if (cubes.empty()) return;
   CubeLevel& cubeLevel = levelAt(level);
   if (frame.settings.lighting) {
-    const RaySource eye = eyeSource(frame.camera, cubeLevel.outline().indexToWorld);
     cubeLevel.prepareLights(device, frame.allLights, times, frame.progress);
-    if (frame.settings.lighting->hasAmbient()) cubeLevel.prepareAmbient(device, *frame.settings.lighting, eye, times, frame.progress);
   }
   const shader::GatherFrame whole = frameOf(frame, cubeLevel, level);
   for (std::size_t i = 0; i < cubes.size(); ++i) {
@@ -130,25 +128,26 @@ void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel
     volume = cubeLevel.read(box);
   }
   const BuiltVolume built = buildVolume(device, volume, frame.classification, times, {}, BuiltLevels::Voxels);
-  const SurroundingLight light{.dimensions = cubeLevel.outline().dimensions,
-                               .first = box.first,
-                               .ambient = cubeLevel.ambient ? &*cubeLevel.ambient : nullptr,
-                               .codes = [&](int number, const GatherVolume& inBox) {
-                                 return codesOf(*cubeLevel.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
-                               }};
+  const SurroundingLight light{
+      .dimensions = cubeLevel.outline().dimensions, .first = box.first, .codes = [&](int number, const GatherVolume& inBox) {
+        return codesOf(*cubeLevel.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
+      }};
   GatherVolume inBox(device, volume, frame.classification, built, times, &light);
   FrameConstants constants = makeFrameConstants(device, built.volume, table, frame.camera, frame.settings);
   constants.detail.finest = constants.detail.coarsest = 0;
+  if (frame.scattered != nullptr) setScattered(constants, *frame.settings.lighting, *frame.scattered);
   const GatherVolume::Shading shading{.frame = constants,
                                       .table = nullptr,
                                       .lighting = frame.settings.lighting ? &*frame.settings.lighting : nullptr,
                                       .lights = nullptr,
+                                      .scattered = frame.isFirst() ? frame.scattered : nullptr,
                                       .axes = {someRayHasAxis(whole, 0), someRayHasAxis(whole, 1), someRayHasAxis(whole, 2)}};
-  inBox.prepare(shading, times);
+  inBox.prepare(shading);
   Commands commands(device);
   inBox.record(commands, shading);
   shader::GatherFrame gatherFrame = whole;
   inBox.describe(gatherFrame);  // what record() has made too
+  gatherFrame.scattered.perVoxel *= float(1 << cube.level);
   gatherFrame.levels[0].dimensions = cubeLevel.outline().dimensions;
   gatherFrame.cube = {
       .first = box.first, .begin = cube.voxels.first, .end = cube.voxels.end, .corner = cube.seen.first, .extent = cube.seen.extent};

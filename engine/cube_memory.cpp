@@ -35,12 +35,14 @@ std::uint64_t CubeDrawing::State::leastBytes(const Camera& camera, const FrameSe
   std::uint64_t axes = 0;
   for (int axis = 0; axis < 3; ++axis) axes += someRayHasAxis(lattice, axis) ? 1 : 0;
   const std::uint64_t voxels = (mostBricks() + 1) * std::tuple_size_v<ScalarBricks::Brick>;
-  const std::uint64_t slots = settings.lighting ? settings.lighting->lights.size() + (settings.lighting->hasAmbient() ? 3 : 0) : 0;
+  const std::uint64_t slots = settings.lighting ? settings.lighting->lights.size() : 0;
   // Of a voxel: what is built of it, and its quads, of which those of light and emission are for all axes along which rays march.
   const std::uint64_t built = 24, quads = sizeof(glm::uvec2) * (1 + slots) + (classification.emission ? 2 * sizeof(glm::uvec4) : 0);
   std::uint64_t largest = voxels * (built + slots * sizeof(std::uint16_t) + axes * quads);
   for (const Light& light : groups.all)
     largest = std::max(largest, SweptLight::leastBytes(outline.dimensions, lightSource(light, outline.indexToWorld)));
+  if (wanted.lighting && hasScatteredLight(*wanted.lighting, classification.emission.has_value()))
+    largest = std::max(largest, scatteringBytes(outline.dimensions, wanted.lighting->phaseG != 0.0));
   constexpr std::uint64_t kSums = 3, kSumBytes = sizeof(glm::vec4) + sizeof(float);
   const std::uint64_t sums = kSums * kSumBytes * std::uint64_t(lattice.samples.x) * std::uint64_t(lattice.samples.y);
   const std::uint64_t bytes = 2 * targetBytes(wanted) + sums + largest;

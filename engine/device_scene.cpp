@@ -48,9 +48,19 @@ const AttenuationTable& DeviceScene::table(bool withLevels, const Progress& prog
   return *table_;
 }
 
-shader::FrameLighting DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, const Progress& progress) {
+void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress) {
+  // First, as a solution takes memory while it is computed.
+  scatters_ = hasScatteredLight(*settings.lighting, built.volume.hasEmission());
+  if (scatters_) {
+    if (!scattering_) {
+      const StageTimer timer(frameTimes, "scattering medium");
+      scattering_.emplace(device, ScatteringMedium(hostVolume, classification));
+    }
+    scattering_->solve(*settings.lighting, frameTimes, progress);
+  }
   if (!lights_) lights_.emplace(device);
-  return lights_->prepare(built.volume, tableSettings, settings, scalars, frameTimes, progress);
+  constants.setup.lighting = lights_->prepare(built.volume, tableSettings, settings, scalars, frameTimes, progress);
+  if (scatters_) setScattered(constants, *settings.lighting, *scattering_);
 }
 
 void DeviceScene::submit(Commands& commands, const Progress& progress) {

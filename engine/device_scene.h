@@ -7,10 +7,12 @@
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/core/stages.h"
 #include "engine/lighting/light_pass.h"
+#include "engine/lighting/scattering_solver.h"
 #include "engine/memory_planner.h"
 #include "engine/octree/device_volume.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/scene/render_settings.h"
+#include "engine/splatting/frame_constants.h"
 #include "engine/splatting/frame_targets.h"
 #include "engine/volume/classification.h"
 
@@ -42,10 +44,12 @@ class DeviceScene {
   const AttenuationTable& table(bool withLevels, const Progress& progress = {});
   /// The largest depths of the table, by direction; empty without its levels.
   const std::vector<double>& largestDepths() const { return largestDepths_; }
-  /// Prepares the lights of settings whose attenuation is not Auto: LightPass::prepare.
-  shader::FrameLighting prepareLights(const FrameSettings& settings, bool scalars, const Progress& progress);
+  /// Prepares the light of settings with lighting whose attenuation is not Auto: sets setup.lighting and scatteredRadiance of `constants`.
+  void prepareLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress);
   /// Of the last frame that was lit.
   const LightPass& lights() const { return *lights_; }
+  /// Null if that has no such light.
+  const ScatteringSolver* scattered() const { return scatters_ ? &*scattering_ : nullptr; }
   /// Submits the commands, waits for them and adds their times to those of the frame.
   void submit(Commands& commands, const Progress& progress = {});
 
@@ -53,6 +57,8 @@ class DeviceScene {
   std::optional<AttenuationTable> table_;
   std::vector<double> largestDepths_;
   std::optional<LightPass> lights_;
+  std::optional<ScatteringSolver> scattering_;
+  bool scatters_ = false;  ///< whether the last frame that was lit has scattered light
 };
 
 }  // namespace freevoxels

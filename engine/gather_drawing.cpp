@@ -13,7 +13,7 @@ namespace freevoxels {
 void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const Progress& progress) {
   try {
     if (!volume_) volume_.emplace(scene_.device, scene_.hostVolume, scene_.classification, scene_.built, scene_.frameTimes);
-    volume_->prepare(shading, scene_.frameTimes);
+    volume_->prepare(shading);
     GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0);
     Commands commands(scene_.device);
     volume_->record(commands, shading);
@@ -46,12 +46,12 @@ GatherDrawing::Frame GatherDrawing::prepare(const Camera& camera, const FrameSet
   constants.detail.finest = frame.lattice.finest;
   const bool readsTable = constants.lightsReadTable && !lightsSamples;
   const AttenuationTable* const table = readsTable ? &scene_.table(constants.detail.coarsest > 0, progress) : nullptr;
-  if (lighting != nullptr)
-    constants.setup.lighting = scene_.prepareLights(settings, onDevice.scalarBricks.has_value() && lightsSamples, progress);
+  if (lighting != nullptr) scene_.prepareLights(settings, onDevice.scalarBricks.has_value() && lightsSamples, constants, progress);
   prepareVolume({.frame = constants,
                  .table = table,
                  .lighting = lighting,
                  .lights = lighting != nullptr ? &scene_.lights() : nullptr,
+                 .scattered = lighting != nullptr ? scene_.scattered() : nullptr,
                  .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
                  .keptQuadBytes = planKeptQuadBytes(scene_.device)},
                 progress);

@@ -8,7 +8,6 @@
 #include "engine/core/parameter.h"
 #include "engine/cube_drawing.h"
 #include "engine/renderer_state.h"
-#include "engine/volume/emission_light.h"
 
 namespace freevoxels {
 
@@ -42,9 +41,9 @@ Renderer::Renderer(const Device& device, std::shared_ptr<const VolumeSource> sou
                    const TableSettings& table, const Progress& progress)
     : device_(device), source_(std::move(source)), classification_(classification), table_(table) {
   isTooLarge_ = inCubes_ = exceeds(device, *source_, classification.emission.has_value());
-  if (isTooLarge_ || makesEmissionLight()) return;  // the latter depends on the frame
+  if (isTooLarge_) return;
   try {
-    whole(false, progress);
+    whole(progress);
   } catch (const Error& error) {
     if (error.kind() != ErrorKind::OutOfMemory) throw;
     inCubes_ = true;
@@ -58,16 +57,9 @@ Renderer::Renderer(const Device& device, const Volume& volume, const Classificat
 
 Renderer::~Renderer() = default;
 
-/// Whether the light of the volume's emission is made here, of values that whoever has made the classification has not read.
-bool Renderer::makesEmissionLight() const {
-  return classification_.emission && !classification_.emissionLight && !source_->isInMemory();
-}
-
-/// The volume as a whole, for a frame with or without light.
-Renderer::State& Renderer::whole(bool lit, const Progress& progress) {
-  const bool wantsLight = lit && makesEmissionLight();
-  if (state_ && (!makesEmissionLight() || wantsLight == (state_->scene.classification.emissionLight != nullptr))) return *state_;
-  state_.reset();
+/// The volume as a whole.
+Renderer::State& Renderer::whole(const Progress& progress) {
+  if (state_) return *state_;
   cubes_.reset();
   builtInFrame_ = true;
   std::vector<StageTime> times;
@@ -76,13 +68,7 @@ Renderer::State& Renderer::whole(bool lit, const Progress& progress) {
     const StageTimer timer(times, "read volume");
     volume_ = source_->whole(progress);
   }
-  if (wantsLight && !emissionLight_) {
-    const StageTimer timer(times, "light of emission");
-    emissionLight_ = std::make_shared<const EmissionLight>(*volume_, classification_);
-  }
-  Classification classification = classification_;
-  if (wantsLight) classification.emissionLight = emissionLight_;
-  state_.reset(new State{.scene = {device_, *volume_, classification, table_, std::move(times), progress}});
+  state_.reset(new State{.scene = {device_, *volume_, classification_, table_, std::move(times), progress}});
   return *state_;
 }
 
@@ -95,7 +81,7 @@ CubeDrawing& Renderer::cubes() {
 
 bool Renderer::surelyFits(const FrameSettings& settings) const {
   const Volume& outline = source_->outline();
-  if (CubeDrawing::whyNot(outline.dimensions, settings)) return true;
+  if (CubeDrawing::whyNot(settings)) return true;
   constexpr std::uint64_t kMargin = 2;  // for what the least does not count: blocks and images
   return !inCubes_ && kMargin * leastGatherBytes(brickVoxels(*source_), outline.dimensions, outline.indexToWorld,
                                                  settings.lighting ? &*settings.lighting : nullptr, classification_.emission.has_value()) <=
@@ -120,7 +106,7 @@ template <typename DrawWhole, typename DrawCubes>
 auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole,
                     const DrawCubes& drawCubes) {
   builtInFrame_ = false;
-  const std::optional<std::string> whyNotCubes = CubeDrawing::whyNot(source_->outline().dimensions, settings);
+  const std::optional<std::string> whyNotCubes = CubeDrawing::whyNot(settings);
   try {
     checkFrameFits(device_, settings);
   } catch (const Error& error) {
@@ -132,7 +118,7 @@ auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& prog
   if (!drewInCubes_) {
     if (isTooLarge_ && !source_->isInMemory()) failTooLarge(device_, source_->outline(), *whyNotCubes);
     try {
-      return drawWhole(whole(settings.lighting.has_value(), progress), settings);
+      return drawWhole(whole(progress), settings);
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::OutOfMemory) throw;
       if (whyNotCubes || !mayChange) throw withNeed(error, settings, whyNotCubes.value_or(""));
@@ -216,6 +202,11 @@ std::vector<std::size_t> Renderer::cubesRead() const {
 std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
   if (!state_ || !state_->scene.built.hasBlocks()) return {};
   return state_->scene.built.volume.stored.front();
+}
+
+std::optional<ScatteringFacts> Renderer::scattering() const {
+  const ScatteringSolver* const solver = state_ ? state_->scene.scattered() : cubes_ ? cubes_->scattered() : nullptr;
+  return solver != nullptr ? std::optional(solver->facts()) : std::nullopt;
 }
 
 CutCounts Renderer::cutCounts() const {

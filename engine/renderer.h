@@ -14,6 +14,7 @@
 #include "engine/memory_planner.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
+#include "engine/scene/scattered_field.h"
 #include "engine/splatting/frame_targets.h"
 #include "engine/splatting/shares.h"
 #include "engine/visibility/cut_counts.h"
@@ -74,14 +75,15 @@ class Renderer {
   std::vector<StageTime> frameTimings() const;
   /// The number of occupied voxels. Unknown until a frame needs the blocks of these.
   std::optional<std::uint64_t> occupiedVoxelCount() const;
+  /// How the scattered light of the last frame that was lit was found; nothing without such light.
+  std::optional<ScatteringFacts> scattering() const;
   /// The counts of the last frame's cut; none without one.
   CutCounts cutCounts() const;
 
  private:
   friend class RendererStages;  // renderer_stages.h
   struct State;
-  bool makesEmissionLight() const;
-  State& whole(bool lit, const Progress& progress);
+  State& whole(const Progress& progress);
   CubeDrawing& cubes();
   template <typename DrawWhole, typename DrawCubes>
   auto draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole, const DrawCubes& drawCubes);
@@ -94,7 +96,6 @@ class Renderer {
   std::shared_ptr<const Volume> volume_;  ///< the whole volume on the host, as long as frames are drawn of it; longer than `state_`
   std::unique_ptr<State> state_;          ///< and on the device; null where it does not fit
   std::unique_ptr<CubeDrawing> cubes_;
-  std::shared_ptr<const EmissionLight> emissionLight_;  ///< null until a frame needs one that is made here
   bool isTooLarge_ = false;                             ///< whether the whole volume certainly does not fit
   bool inCubes_ = false;                                ///< whether gathered frames are drawn cube by cube
   bool drewInCubes_ = false;                            ///< whether the last frame was

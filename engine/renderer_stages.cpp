@@ -70,6 +70,11 @@ std::vector<glm::dvec3> RendererStages::downloadEmission() const {
   return downloadMedium(state_.scene.device, state_.scene.builtWithBlocks().volume, 0).emission;
 }
 
+std::optional<ScatteredField> RendererStages::downloadScattered() const {
+  const ScatteringSolver* const solver = state_.scene.scattered();
+  return solver != nullptr ? std::optional(solver->download()) : std::nullopt;
+}
+
 std::vector<std::vector<std::uint8_t>> RendererStages::downloadTable() const {
   return freevoxels::downloadTable(state_.scene.device, state_.scene.builtWithBlocks().volume, state_.scene.table(false));
 }

@@ -25,6 +25,8 @@ class RendererStages {
   std::vector<float> downloadExtinction() const;
   /// Emission of the voxels, in the same order; empty if there is none.
   std::vector<glm::dvec3> downloadEmission() const;
+  /// What the last frame that was lit had of light that was scattered before, from the surroundings or emitted; none without such light.
+  std::optional<ScatteredField> downloadScattered() const;
   /// The attenuation table: bytes [direction][voxel], voxels x fastest without padding.
   std::vector<std::vector<std::uint8_t>> downloadTable() const;
   /// Depths along rays from a source. Fails with ErrorKind::OutOfMemory.

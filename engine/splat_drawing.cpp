@@ -40,7 +40,7 @@ SplatDrawing::Frame SplatDrawing::prepare(const Camera& camera, const FrameSetti
   constants = makeFrameConstants(scene_.device, built.volume, scene_.tableSettings, camera, settings);
   if (constants.readsTable()) frame.table = &scene_.table(constants.readsLevels(), progress);
   frame.targets = scene_.targetPool.take(scene_.device, settings, settings.isSorted() ? TargetKind::Image : TargetKind::Sums);
-  if (settings.lighting) constants.setup.lighting = scene_.prepareLights(settings, false, progress);
+  if (settings.lighting) scene_.prepareLights(settings, false, constants, progress);
   CullRule& cull = constants.cull;
   if (cull.hiddenDepth > 0.0 &&
       !canHide(scene_.tableSettings, scene_.largestDepths(), glm::dmat3(built.volume.indexToWorld), cull.hiddenDepth))

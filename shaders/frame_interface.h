@@ -39,21 +39,29 @@ struct CodeBricks {
   ivec3 cells;           // number of bricks along the axes
 };
 
+// Light that was scattered before, comes from the surroundings or is emitted (scattered_light.glsl).
+struct ScatteredGrid {
+  uvec2
+      texels;  // device address: `moments` vec4 by cell, x fastest: the mean radiance, and its flux along x, y and z; 0 without such light
+  ivec3 cells;
+  float perVoxel;  // cells to the edge of a voxel
+  float share;     // of this light that is scattered out of its direction
+  float flux;      // factor of the flux towards the eye
+  int moments;
+};
+
 // The lighting of a frame.
 struct FrameLighting {
   int lightCount;
   int lookup;                    // kLookup... for the transmittance to lights
-  int hasAmbient;            // whether there is light in `ambientByDirection`
   vec3 tint;                     // factor of the extinction between light and voxel
+  float forward;                 // fraction of what is scattered that counts as not scattered
+  vec3 narrowing;                // mean factor of the extinction of light that this makes
   float phaseG;
   float surface;                 // fraction of the lights that is reflected like a surface
-  int octaves;                   // orders of scattering
-  float octaveScale;             // factor from one order to the next
+  ScatteredGrid scattered;
   mat3 gradientToWorld;
   CodeBricks scalars;  // of voxels, whose gradients are the normals of surfaces; codes at address 0: extinctions' are
-  // By cell number: radiance from this direction times its fraction of the sphere (rgb), and that fraction
-  // (a).
-  vec4 ambientByDirection[kMaximumCells];
 };
 
 // The constants of a frame. Index space is relative to the middle of the volume, so that 32-bit floats keep

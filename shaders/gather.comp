@@ -232,7 +232,7 @@ void main() {
   sampleRay.slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / sampleRay.along;
   sampleRay.middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / sampleRay.along;
   sampleRay.eye = dot(frame.axes[kAxis].eye, position);
-  Sums sums = Sums(vec3(0.0), 0.0, 1.0);
+  Sums sums = Sums(vec3(0.0), 0.0, 1.0, vec3(1.0));
   float distanceSum = 0.0;  // sum of e times world distance from the eye plane
   const int sampleIndex = index.x + index.y * frame.samples.x;
   vec3 colorBefore = vec3(0.0);
@@ -241,6 +241,7 @@ void main() {
   colorBefore = before.rgb;
   sums.transmittance -= before.a;
   distanceSum = imageLoad(distances, sampleIndex).x;
+  if (kTinted) sums.colorTransmittance = pow(vec3(sums.transmittance), frame.colorNarrowing);
 #endif
   // Scalars are marched apart from the levels of blocks behind them, so that neither loop has the code of the other: lavapipe executes
   // branches that no lane takes.

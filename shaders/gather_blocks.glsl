@@ -55,8 +55,7 @@ SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
   SliceValues found;
   found.medium = within ? mediumAt(quad, weights, extinctionsOf(quad), ray.toEye) : vec4(0.0);
   found.depths = depthsTowardsLights(quad, weights);
-  found.ambient = ambientAt(quad, weights);
-  continueDepths(found.depths, found.ambient, level, position);
+  continueDepths(found.depths, level, position);
   found.emission = kEmits && within ? sumOf(extraQuad(quad), weights) : vec3(0.0);
   found.coverage = found.medium.a > 0.0 || (kEmits && found.emission != vec3(0.0)) ? 1.0 : 0.0;
   found.hasLight = true;
@@ -87,19 +86,15 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   SegmentLight lit;
   const int before = slice - int(ray.direction);
-  if (!last.hasLight) {  // as slices without blocks were skipped
-    last.depths = max(found.depths - ray.layer * medium.a, vec4(0.0));
-    last.ambient = found.ambient;
-  }
+  if (!last.hasLight) last.depths = max(found.depths - ray.layer * medium.a, vec4(0.0));  // as slices without blocks were skipped
   if (before < 0 || before >= level.count) last.depths = depthsBeyond(before, found.depths);
   if (slice < 0 || slice >= level.count) found.depths = depthsBeyond(slice, last.depths);
   lit.begin = last.depths;
   lit.change = found.depths - lit.begin;
-  lit.ambientBegin = last.ambient;
-  lit.ambientChange = found.ambient - lit.ambientBegin;
   lit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   if (kSurfaces) {
     lit.surface = 0.0;
+    lit.scatteredOffset = vec3(0.0);
     if (sums.transmittance * ray.layer * medium.a > kMinShaded) {
       findGradients(last, found, level, ray, slice);
       const vec3 gradient = 0.5 * (last.gradient + found.gradient);

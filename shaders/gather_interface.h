@@ -24,9 +24,6 @@ FV_CONSTANT int kPieceBricksLog2 = 17;
 FV_CONSTANT int kMaxPieces = 32;
 // Largest number of lights that are evaluated at samples, from quads of optical depths.
 FV_CONSTANT int kMaxSampleLights = 4;
-// Quads of codes of light: a slot for each light, then one for each channel of ambient light.
-FV_CONSTANT int kMaxLightSlots = kMaxSampleLights + 3;
-FV_CONSTANT int kAmbientThreads = 64;     // of a workgroup of ambient_sweep.comp
 // For classification after interpolation: the number of the transfer function's intervals of the scalar, and
 // that of the codes of scalars, which start at 1.
 FV_CONSTANT int kTransferIntervals = 4096;
@@ -68,7 +65,7 @@ struct GatherAxis {
   float tiltDepth;     // change of the distance by that step
   float middlePlane;   // voxels
   uvec2 mediumPieces[kMaxPieces], sourcePieces[kMaxPieces], extraPieces[kMaxPieces];  // device addresses of quads
-  uvec2 lightPieces[kMaxLightSlots][kMaxPieces];
+  uvec2 lightPieces[kMaxSampleLights][kMaxPieces];
   ivec2 slices[2][kMaximumLevels];  // by the ray's sign along the axis (0: descending) and level: first and end, ascending
 };
 
@@ -129,11 +126,12 @@ struct GatherFrame {
   GatherCube cube;  // only where it is specialised for cubes
   SampleLight lights[kMaxSampleLights];
   vec3 tint;              // factor of the extinction between light and voxel
+  float forward;          // fraction of what is scattered that counts as not scattered, on the way to the eye
+  vec3 colorNarrowing;    // mean factor of the extinction that this makes
+  ScatteredGrid scattered;  // whose texels are bound
   float phaseG;
   float surface;          // fraction of the lights that is reflected like a surface
   float nearestLight2;    // least squared distance to a light that counts, in world units
-  vec3 ambient;           // mean radiance over all directions, of all orders of scattering
-  float octaveScale;      // factor from one order of scattering to the next
   mat3 indexToWorld;      // linear part
   mat3 gradientToWorld;
   uvec2 gradients;        // device address of the output of surface_gradients.comp
@@ -216,35 +214,6 @@ struct LightPlanes {
   vec3 place;        // of the light in index space; at infinity the direction towards it
   int atInfinity;
   int fanIndex;
-};
-
-// ambient_sweep.comp
-struct AmbientSweepPush {
-  ivec3 cells;
-  ivec3 step;        // from cell to cell, in the direction of the light
-  float stepLength;  // world units
-  vec3 share;        // fraction of the unshadowed light that comes from this direction, by channel
-  float weight;      // fraction of the sphere that the direction represents, divided by the sum of all orders of scattering
-  int octaves;       // of scattering
-  float octaveScale;
-  float phaseG;
-  mat3 cellToWorld;  // linear part
-  vec3 eye;          // position of the eye in cells; for an orthographic camera the direction towards it
-  int orthographic;
-  vec3 tint;         // of the extinction, by channel
-};
-
-// ambient_codes.comp
-struct AmbientCodesPush {
-  ivec3 cells;
-  int cellEdge;      // voxels
-  int blockEdge;     // voxels
-  ivec3 firstBlock;  // of the box whose bricks these are, among the blocks of the cells' volume
-  int firstLight;    // of the channel
-  int firstWeight;   // first weight to divide by; -1 for none
-  uint firstBrick;
-  uint count;        // of bricks
-  uvec2 codes;       // device address: 16 bits a block in bricks, x fastest
 };
 
 // brick_quads.comp

@@ -3,6 +3,8 @@
 #define GATHER_LIGHT_GLSL
 #include "gather_march.glsl"
 #include "surface_scattering.glsl"
+#define SCATTERED_TEXEL(i) texelFetch(scatteredTexels, i)
+#include "scattered_light.glsl"
 
 const float kMaxLightDepth = 0.99 * kOpaqueDepth;  // approximately the end of the code of depths along rays
 
@@ -12,8 +14,8 @@ float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6
 // The light that arrives at a segment of a ray, and that it emits.
 struct SegmentLight {
   vec4 begin, change;   // optical depths towards the lights at the segment's beginning, and their change along it
-  vec3 ambientBegin, ambientChange;  // the same for the depths that ambient light has passed, by channel
   vec3 position;        // of the segment's middle, in index space
+  vec3 scatteredOffset;  // from there to where scattered light is looked up; only with kSurfaces
   vec3 normal;          // outward unit normal of a surface there, in world space
   float surface;        // fraction of the light that is reflected as by a surface, 0..1
   vec4 outside;         // optical depths towards the lights from a point outside of the surface
@@ -22,18 +24,18 @@ struct SegmentLight {
 
 // What a surface adds to the sum of lightOf(). A surface that faces the light is not shadowed by its
 // own voxels, which would take half of the light on average.
-vec3 surfaceLight(SegmentLight lit, int light, vec3 toLight, float depth, vec3 toEye) {
+vec3 surfaceLight(SegmentLight lit, int light, vec3 toLight, vec3 depth, vec3 toEye) {
   const bool facing = dot(lit.normal, toLight) > 0.0;
   const float begin = facing ? lit.outside[light] : lit.begin[light], change = facing ? 0.0 : lit.change[light];
   const vec3 tint = kTinted ? frame.tint : vec3(1.0);
   vec3 through;
-  [[unroll]] for (int c = 0; c < 3; ++c) through[c] = exp(-tint[c] * begin) * meanTransmittance(depth + tint[c] * change);
+  [[unroll]] for (int c = 0; c < 3; ++c) through[c] = exp(-tint[c] * begin) * meanTransmittance(depth[c] + tint[c] * change);
   return lit.surface * (facing ? 0.5 : 1.0) * surfaceScattering(lit.normal, toLight, toEye) * through;
 }
 
 // The light of one source that a segment scatters to the eye, for albedo 1: its mean over the segment, attenuated by what lies in front
-// within the segment. `depth` is the segment's optical depth.
-vec3 lightOf(int light, SegmentLight lit, float depth, vec3 toEye) {
+// within the segment. `depth` is the segment's optical depth for light.
+vec3 lightOf(int light, SegmentLight lit, vec3 depth, vec3 toEye) {
   const SampleLight source = frame.lights[light];
   vec3 toLight = source.positionOrDirection;
   float distance2 = 1.0;
@@ -45,20 +47,13 @@ vec3 lightOf(int light, SegmentLight lit, float depth, vec3 toEye) {
   const float begin = lit.begin[light], change = lit.change[light];
   // A stored depth at the end of its range stands for any larger one; times a tint below 1 it would let light through.
   if (kTinted && begin + max(change, 0.0) >= kMaxLightDepth) return vec3(0.0);
-  vec3 sum = vec3(0.0);
-  float scale = 1.0;
-  for (int octave = 0; octave < kOctaves; ++octave) {
-    float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(scale * frame.phaseG, -toLight, toEye);
-    if (kSurfaces) phase *= 1.0 - lit.surface;
-    vec3 through;
-    if (kTinted)
-      [[unroll]] for (int c = 0; c < 3; ++c)
-        through[c] = exp(-scale * frame.tint[c] * begin) * meanTransmittance(depth + scale * frame.tint[c] * change);
-    else
-      through = vec3(exp(-scale * begin) * meanTransmittance(depth + scale * change));
-    sum += scale * phase * through;
-    scale *= frame.octaveScale;
-  }
+  float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(frame.phaseG, -toLight, toEye);
+  if (kSurfaces) phase *= 1.0 - lit.surface;
+  vec3 sum;
+  if (kTinted)
+    [[unroll]] for (int c = 0; c < 3; ++c) sum[c] = phase * exp(-frame.tint[c] * begin) * meanTransmittance(depth[c] + frame.tint[c] * change);
+  else
+    sum = vec3(phase * exp(-begin) * meanTransmittance(depth.r + change));
   if (kSurfaces && lit.surface > 0.0) sum += surfaceLight(lit, light, toLight, depth, toEye);
   return source.color / distance2 * sum;
 }
@@ -70,18 +65,21 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
   const float through = exp(-depth);
   const float rest = sums.transmittance * through;
   const float own = depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth;
-  vec3 leaving = vec3(own);
+  vec3 leaving = vec3(own), depths = vec3(depth), before = vec3(sums.transmittance);
+  if (kTinted) {  // what is scattered forwards within the segment goes on
+    depths = kSampled ? depth - segmentLength * frame.forward * frame.sourceUnit * medium.rgb : depth * frame.colorNarrowing;
+    [[unroll]] for (int c = 0; c < 3; ++c) leaving[c] = meanTransmittance(depths[c]);
+    before = sums.colorTransmittance;
+    sums.colorTransmittance *= exp(-depths);
+  }
   if (kSampled) {
-    leaving = vec3(0.0);
-    [[unroll]] for (int c = 0; c < 3; ++c)
-      if (c < kAmbient) leaving[c] = exp(-lit.ambientBegin[c]) * meanTransmittance(depth + lit.ambientChange[c]);
-    leaving = frame.ambient * (kAmbient == 1 ? leaving.rrr : leaving);
+    leaving = kScattered ? leaving * scatteredLightAt(frame.scattered, kFlux, kSurfaces ? lit.position + lit.scatteredOffset : lit.position, toEye) : vec3(0.0);
     [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
-      if (i < kLights) leaving += lightOf(i, lit, depth, toEye);
+      if (i < kLights) leaving += lightOf(i, lit, depths, toEye);
   }
   vec3 source = leaving * medium.rgb;
   if (kEmits) source += lit.emission;
-  sums.color += sums.transmittance * segmentLength * source;
+  sums.color += before * segmentLength * source;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
 }
@@ -100,16 +98,9 @@ vec4 depthsTowardsLights(int quad, vec4 weights) {
   return depths;
 }
 
-vec3 ambientAt(int quad, vec4 weights) {
-  vec3 depths = vec3(0.0);
-  [[unroll]] for (int c = 0; c < 3; ++c)
-    if (c < kAmbient) depths[c] = lightDepth(kLights + c, quad, weights);
-  return depths;
-}
-
 // Beyond the volume extinction falls to 0 within a block. So does the depth towards a light on that side, as the weights do; behind the
-// volume it stays as it is at the border. About as much ambient light arrives around the volume as at its border.
-void continueDepths(inout vec4 depths, inout vec3 ambient, Slices level, vec2 position) {
+// volume it stays as it is at the border.
+void continueDepths(inout vec4 depths, Slices level, vec2 position) {
   const vec2 first = clamp(position + 1.0, 1e-6, 1.0), last = clamp(vec2(level.dimensions) - position, 1e-6, 1.0);
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
@@ -119,8 +110,6 @@ void continueDepths(inout vec4 depths, inout vec3 ambient, Slices level, vec2 po
     const float share = shares.x * shares.y;
     depths[i] /= share * share;
   }
-  const float share = first.x * first.y * last.x * last.y;
-  if (kAmbient > 0) ambient /= share * share;
 }
 
 // The depths towards the lights on a slice beyond the volume, from those at the other end of the stretch to it.

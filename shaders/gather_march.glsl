@@ -16,9 +16,9 @@ layout(constant_id = 2) const bool kColored = true;   // whether blocks have the
 layout(constant_id = 3) const bool kLit = false;      // whether scalars have light of voxels
 layout(constant_id = 4) const bool kPieces = false;   // whether quads are in more than one piece
 layout(constant_id = 5) const int kLights = 0;        // number of lights evaluated at samples
-layout(constant_id = 6) const int kAmbient = 0;       // channels of ambient light evaluated at samples
-layout(constant_id = 7) const int kOctaves = 1;       // orders of scattering
-layout(constant_id = 8) const bool kTinted = false;   // whether the extinction differs between the colours of light
+layout(constant_id = 6) const bool kScattered = false;  // whether samples have light that was scattered before or comes from everywhere
+layout(constant_id = 7) const bool kFlux = false;     // whether that depends on the direction to the eye
+layout(constant_id = 8) const bool kTinted = false;   // whether the extinction of light differs between colours, or from that of the eye
 layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are lit at samples emit light, too
 layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
 
@@ -37,20 +37,17 @@ layout(binding = 4) uniform utextureBuffer extraQuads;
 layout(binding = 5, rgba32f) SUMS_ACCESS uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) SUMS_ACCESS uniform imageBuffer distances;       // sum of e times distance
 
-// Codes of optical depths, 16 bits each: towards each light, then for each channel those that ambient light
-// has passed.
+// Codes of optical depths towards each light, 16 bits each.
 layout(binding = 9) uniform utextureBuffer lightQuads0;
 layout(binding = 10) uniform utextureBuffer lightQuads1;
 layout(binding = 11) uniform utextureBuffer lightQuads2;
 layout(binding = 12) uniform utextureBuffer lightQuads3;
-layout(binding = 13) uniform utextureBuffer lightQuads4;
-layout(binding = 14) uniform utextureBuffer lightQuads5;
-layout(binding = 15) uniform utextureBuffer lightQuads6;
+layout(binding = 13) uniform textureBuffer scatteredTexels;  // ScatteredGrid, with kScattered
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
 layout(binding = 8) uniform utextureBuffer skipCells;
-layout(binding = 16) uniform utextureBuffer gradientTexels;  // packed gradients of blocks, in bricks; not with kPieces
+layout(binding = 14) uniform utextureBuffer gradientTexels;  // packed gradients of blocks, in bricks; not with kPieces
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
@@ -84,12 +81,13 @@ struct Sums {
   vec3 color;
   float distance;       // sum of e times slices from the eye
   float transmittance;
+  vec3 colorTransmittance;  // of light, with kTinted; otherwise that is `transmittance`
 };
 
 // With kCube: 1 if the last quad is in the cube, otherwise 0.
 int inCube = 0;
 
-// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission, depths, ambient and the
+// The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission, depths and the
 // gradient; scalarValuesAt() sets all but emission, and leaves light and gradient to be found later (hasLight, hasGradient).
 struct SliceValues {
   float coverage;  // share of the weights that voxels with data have, 0..1; if it is 0 the other values are undefined
@@ -100,8 +98,7 @@ struct SliceValues {
   vec3 light;      // relative to that of a source term of 1
   vec3 gradient;   // gradient of the scalar, or of the extinction, per block in index space
   vec4 depths;     // optical depths towards the lights
-  vec3 ambient;    // optical depths that ambient light has passed, by channel
-  bool hasGradient, hasLight;  // whether `gradient`, and `depths` and `ambient`, are known
+  bool hasGradient, hasLight;  // whether `gradient` and `depths` are known
 };
 
 // The stretch of a ray between two slices of scalars.
@@ -118,7 +115,7 @@ SliceValues emptySliceValues() {
   SliceValues nothing;
   nothing.coverage = nothing.scalar = 0.0;
   nothing.integral = nothing.medium = vec4(0.0);
-  nothing.light = nothing.gradient = nothing.ambient = nothing.emission = vec3(0.0);
+  nothing.light = nothing.gradient = nothing.emission = vec3(0.0);
   nothing.hasGradient = nothing.hasLight = false;
   nothing.depths = vec4(0.0);
   return nothing;
@@ -150,10 +147,7 @@ uvec2 lightQuad(int slot, int quad) {
     case 0: return texelFetch(lightQuads0, quad).xy;
     case 1: return texelFetch(lightQuads1, quad).xy;
     case 2: return texelFetch(lightQuads2, quad).xy;
-    case 3: return texelFetch(lightQuads3, quad).xy;
-    case 4: return texelFetch(lightQuads4, quad).xy;
-    case 5: return texelFetch(lightQuads5, quad).xy;
-    default: return texelFetch(lightQuads6, quad).xy;
+    default: return texelFetch(lightQuads3, quad).xy;
   }
 }
 

@@ -24,7 +24,7 @@ SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec3 toEye) {
   found.coverage = sumOf(weights);
   found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
   tableAt(found.scalar, found.integral, found.medium);
-  found.gradient = found.ambient = vec3(0.0);
+  found.gradient = vec3(0.0);
   found.depths = vec4(0.0);
   found.hasGradient = found.hasLight = false;
   found.light = vec3(1.0);
@@ -94,13 +94,11 @@ void findLight(inout SliceValues last, inout SliceValues found, Slices level, Ra
     vec4 weights;
     const int quad = quadAt(level, position, there, weights);
     vec4 depths = depthsTowardsLights(quad, weights);
-    vec3 ambient = ambientAt(quad, weights);
-    continueDepths(depths, ambient, level, position);
+    continueDepths(depths, level, position);
     SliceValues at = found;
     if (first) at = last;
     addLayerTowards(depths, level, at, voxelPosition(ray, float(there)), shows);
     at.depths = depths;
-    at.ambient = ambient;
     if (first) last = at; else found = at;
     again = kPieces ? !begun : first;
     first = false;
@@ -136,6 +134,7 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
   bool shows = shown > kMinShaded;
   if (kSurfaces) {
     nearLit.surface = farLit.surface = 0.0;
+    nearLit.scatteredOffset = farLit.scatteredOffset = vec3(0.0);
     if (shown > 2.0 * kMinShaded) {
       findGradients(last, found, level, ray, slice);
       SliceValues first, second;
@@ -153,12 +152,6 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
   // Along a stretch the depth towards a light changes as the depth towards the eye does, since both are
   // integrals of the same extinction.
   const float nearPart = nearExtinction / (nearExtinction + farExtinction);
-  SliceValues first, second;
-  endsOf(first, second, last, found);
-  nearLit.ambientBegin = first.ambient;
-  nearLit.ambientChange = (second.ambient - first.ambient) * nearPart;
-  farLit.ambientBegin = first.ambient + nearLit.ambientChange;
-  farLit.ambientChange = second.ambient - first.ambient - nearLit.ambientChange;
   nearLit.begin = last.depths;
   nearLit.change = (found.depths - last.depths) * nearPart;
   farLit.begin = nearLit.begin + nearLit.change;

@@ -60,11 +60,11 @@ void setSurface(inout SegmentLight lit, vec3 gradient, float decrease) {
   lit.surface = frame.surface * min(2.0 * abs(decrease), 1.0);
 }
 
-// Optical depths at a point kOutside blocks outside of a surface. At the surface itself its own voxels would cast steps of shadow; whether
-// it faces the light follows from its normal.
+// A point kOutside blocks outside of a surface, and the optical depths there. At the surface itself its own voxels would cast steps of shadow;
+// whether it faces the light follows from its normal.
 struct Outside {
   vec4 depths;
-  vec3 ambient;
+  vec3 offset;  // from the surface, voxels
 };
 
 Outside outsideOf(Slices level, Ray ray, float slice, vec3 outwards) {
@@ -74,13 +74,12 @@ Outside outsideOf(Slices level, Ray ray, float slice, vec3 outwards) {
   const vec2 position = ray.origin + ray.slope * slice + vec2(offset[kSideA], offset[kSideB]);
   vec4 weights;
   const int quad = quadAt(level, position, clamp(int(floor(slice + offset[kAxis] + 0.5)), 0, level.count - 1), weights);
-  return Outside(depthsTowardsLights(quad, weights), ambientAt(quad, weights));
+  return Outside(depthsTowardsLights(quad, weights), ray.edge * offset);
 }
 
 void lightFrom(inout SegmentLight lit, Outside outside) {
   lit.outside = outside.depths;
-  lit.ambientBegin = mix(lit.ambientBegin, outside.ambient, lit.surface);
-  lit.ambientChange *= 1.0 - lit.surface;
+  lit.scatteredOffset = lit.surface * outside.offset;
 }
 
 #endif

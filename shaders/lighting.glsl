@@ -2,12 +2,18 @@
 // positions of the eye, to first order in the direction towards the eye; there must then be neither a phase function nor surfaces.
 #ifndef LIGHTING_GLSL
 #define LIGHTING_GLSL
+#extension GL_EXT_buffer_reference : require
+#extension GL_EXT_buffer_reference_uvec2 : require
 #include "block_depth.glsl"
 #include "code_bricks.glsl"
 #include "phase_function.glsl"
 #include "ray_lookup.glsl"
 #include "self_attenuation.glsl"
 #include "surface_scattering.glsl"
+
+layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer ScatteredTexels { vec4 values[]; };
+#define SCATTERED_TEXEL(i) ScatteredTexels(frame.lighting.scattered.texels).values[i]
+#include "scattered_light.glsl"
 
 const float kMaxRayDepth = 0.9999 * kOpaqueDepth;  // the end of the code of depths along rays
 
@@ -74,14 +80,13 @@ vec2 meansSeen(SeenBlock seen, float own) {
   return vec2(sameSide, otherSide) / selfAttenuation(seen.own);
 }
 
-// The fraction of the light from a direction that reaches the visible parts of the block, in an octave of
-// scattering that multiplies optical depths by `scale`. `depth` and `unsaturated` are as in depthTowards.
-Sides lightReaching(SeenBlock seen, vec3 direction, float depth, float unsaturated, float scale) {
+// The fraction of the light from a direction that reaches the visible parts of the block. `depth` and `unsaturated` are as in depthTowards.
+Sides lightReaching(SeenBlock seen, vec3 direction, float depth, float unsaturated) {
   const float layer = layerLength(direction);
   const bool inFull = frame.lighting.lookup == kLookupExact || frame.pathLengthCorrection != 0;
   const float counted = inFull ? layer : frame.voxelSize;
-  const float inFront = scale * depthInFront(seen.block, direction, depth, unsaturated * seen.sigma * counted);
-  const float own = scale * seen.sigma * layer * float(layersOf(seen.block, direction));
+  const float inFront = depthInFront(seen.block, direction, depth, unsaturated * seen.sigma * counted);
+  const float own = seen.sigma * layer * float(layersOf(seen.block, direction));
   if (!kTinted) {
     const vec2 means = exp(-inFront) * meansSeen(seen, own);
     return Sides(vec3(means.x), vec3(means.y));
@@ -134,45 +139,9 @@ void addScattered(inout ScatteredLight sum, int light, SeenBlock seen) {
   else
     depth = depthTowards(towardsSource(toLight, frame.lighting.lookup, lights[light].beyond), seen.rank, unsaturated);
   const vec3 way = normalize(frame.indexToWorld * toLight);
-  float scale = 1.0;
-  for (int octave = 0; octave < frame.lighting.octaves; ++octave) {
-    float phase = kAnyView ? 1.0 / (4.0 * kPi) : phaseFunction(scale * frame.lighting.phaseG, -way, seen.toEye);
-    if (seen.surface > 0.0)
-      phase = mix(phase, octave == 0 ? surfaceScattering(seen.normal, way, seen.toEye) : 0.0, seen.surface);
-    const vec3 arriving = lights[light].color * (scale * phase / distance2);
-    addLight(sum, seen, arriving, lightReaching(seen, toLight, depth, unsaturated, scale), way);
-    scale *= frame.lighting.octaveScale;
-  }
-}
-
-// The mean of the radiance that reaches the block from all directions, weighted by the phase function: a
-// block that is dark from everywhere is dark in ambient light. The weights of a narrow phase function at a
-// few directions do not add up to 1, so the sum is divided by their sum.
-void addFromEverywhere(inout ScatteredLight total, SeenBlock seen) {
-  ScatteredLight sum = ScatteredLight(vec3(0.0), vec3(0.0));
-  float weights = 0.0, parts = 0.0;
-  const TableLookup towards = towardsSource(vec3(0.0, 0.0, 1.0), kLookupBilinear, uvec2(0));
-  const int edge = 2 * frame.cells + 1;
-  for (int i = 0; i < edge * edge * edge; ++i) {
-    const vec4 fromThere = frame.lighting.ambientByDirection[i];
-    if (fromThere.w == 0.0) continue;  // a cell inside the cube, which is not a direction
-    const ivec3 cell = ivec3(i % edge, i / edge % edge, i / edge / edge) - frame.cells;
-    const float depth = decodeDepth(frame.code, storedCode(towards, cell, seen.rank));
-    const float unsaturated = isAtEnd(towards, cell, seen.rank) ? 0.0 : 1.0;
-    const vec3 direction = vec3(cell) / float(frame.cells);
-    const vec3 way = normalize(frame.indexToWorld * direction);
-    float scale = 1.0;
-    for (int octave = 0; octave < frame.lighting.octaves; ++octave) {
-      const float phase =
-          kAnyView || frame.lighting.phaseG == 0.0 ? 1.0 : 4.0 * kPi * phaseFunction(scale * frame.lighting.phaseG, -way, seen.toEye);
-      weights += fromThere.w * scale * phase;
-      parts += fromThere.w * scale;
-      addLight(sum, seen, scale * phase * fromThere.rgb, lightReaching(seen, direction, depth, unsaturated, scale), way);
-      scale *= frame.lighting.octaveScale;
-    }
-  }
-  total.light += parts / weights * sum.light;
-  total.towards += parts / weights * sum.towards;
+  float phase = kAnyView ? 1.0 / (4.0 * kPi) : phaseFunction(frame.lighting.phaseG, -way, seen.toEye);
+  if (seen.surface > 0.0) phase = mix(phase, surfaceScattering(seen.normal, way, seen.toEye), seen.surface);
+  addLight(sum, seen, lights[light].color * (phase / distance2), lightReaching(seen, toLight, depth, unsaturated), way);
 }
 
 // The scattered light for albedo 1. `towardsEye` is a unit vector in world space, `own` the block's optical
@@ -189,7 +158,8 @@ ScatteredLight scatteredLight(Block block, float sigma, uint rank, vec3 towardsE
   }
   ScatteredLight sum = ScatteredLight(vec3(0.0), vec3(0.0));
   for (int i = 0; i < frame.lighting.lightCount; ++i) addScattered(sum, i, seen);
-  if (frame.lighting.hasAmbient != 0) addFromEverywhere(sum, seen);
+  if (frame.lighting.scattered.texels != uvec2(0))
+    sum.light += scatteredLightAt(frame.lighting.scattered, !kAnyView && frame.lighting.scattered.moments > 1, seen.block.center, seen.toEye);
   return sum;
 }
 

@@ -275,6 +275,7 @@ void FrameSeries::report(const Renderer& renderer, const Volume& volume) {
   report_.voxels = volume.voxelCount();
   report_.memory = renderer.memory();
   report_.cut = renderer.cutCounts();
+  report_.scattering = renderer.scattering();
 }
 
 }  // namespace freevoxels

@@ -125,9 +125,9 @@ void Reader::read(const Json& keywords) {
 
 void Reader::readSceneFile() {
   if (sceneFile_.empty()) return;
-  SceneFile(sceneFile_).applyTo(options_.scene, [this](const SceneField& field) {
-    return uses(field.section) && !isReplaced(field, stronger_);
-  });
+  const SceneFile scene(sceneFile_);
+  options_.warnings = scene.warnings();
+  scene.applyTo(options_.scene, [this](const SceneField& field) { return uses(field.section) && !isReplaced(field, stronger_); });
 }
 
 }  // namespace

@@ -29,6 +29,7 @@ struct KeywordOptions {
 
   SceneDescription scene;
   DeviceOptions device;
+  std::vector<std::string> warnings;  ///< what the user should know of the scene file
 };
 
 /// Takes the key of a name, with '-' or '_', out of an object; nothing if it has none. Keys of sections are not looked at.

@@ -76,12 +76,7 @@ const std::vector<OptionHelp> kLightHelp{
     {"environment-rotation", "Rotation of the environment about +y in degrees, added to its azimuths [0]"},
     {"environment-intensity", "Factor of the environment's radiance [1]"},
     {"phase-g", "Asymmetry of the Henyey-Greenstein phase function, -0.99 to 0.99; positive scatters forwards [0]"},
-    {"scattering", fmt::format("Orders of scattering, 1 to 8: 1 is single scattering; each further order has --scattering-scale of the "
-                               "light of the one before, which reaches deeper [{}]",
-                               kDefaultScattering)},
-    {"scattering-scale",
-     fmt::format("Factor of optical depth towards the light, --phase-g and light from one order of scattering to the next [{}]",
-                 Lighting{}.scatteringScale)},
+    {"scattering", fmt::format("Orders of scattering in fog: all that matter, or 1 to {}; 1 is single scattering [all]", kMaxOrders)},
     {"extinction-tint",
      "Factor of the extinction between light and voxel for each colour, so that white light becomes coloured inside the "
      "volume [1,1,1]"},

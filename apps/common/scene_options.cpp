@@ -118,7 +118,9 @@ void SceneOptions::applyScene() {
   SceneFieldSet given;
   for (const auto& [field, option] : options_)
     if (option->count() > 0) given.insert(field);
-  SceneFile(*file).applyTo(description, [&](const SceneField& field) {
+  const SceneFile scene(*file);
+  for (const std::string& warning : scene.warnings()) spdlog::warn("{}", warning);
+  scene.applyTo(description, [&](const SceneField& field) {
     return options_.contains(&field) && !isReplaced(field, given) && (files.empty() || honours(files, field.name));
   });
 }

@@ -29,6 +29,10 @@ void logCounts(const RunReport& report) {
         report.voxels - *report.visibleVoxels, stored / 0x1p20, stored / double(std::max<std::uint64_t>(*report.visibleVoxels, 1)),
         stored / double(report.voxels));
   }
+  if (const auto& solved = report.scattering)
+    spdlog::debug(
+        "scattered light: {}x{}x{} cells of {}³ voxels, {} sets of 26 sweeps, residual {:.4f} of the light that is scattered once",
+        solved->cells.x, solved->cells.y, solved->cells.z, solved->edge, solved->sets, solved->residual);
   if (report.cut.considered == 0) return;  // the gather chooses none
   spdlog::debug("{} blocks considered for the last frame, {} of them empty, {} outside of the image, {} hidden", report.cut.considered,
                 report.cut.empty, report.cut.outside, report.cut.hidden);
@@ -67,6 +71,11 @@ void writeTimings(const std::filesystem::path& file, const RunReport& report) {
   json["voxels"] = report.voxels;
   if (report.visibleVoxels) json["visible_voxels"] = *report.visibleVoxels;
   json["memory_bytes"] = {{"stored", report.memory.stored()}, {"peak", report.devicePeak}};
+  if (const auto& solved = report.scattering)
+    json["scattering"] = {{"cells", {solved->cells.x, solved->cells.y, solved->cells.z}},
+                          {"cell_edge", solved->edge},
+                          {"sets", solved->sets},
+                          {"residual", solved->residual}};
   json["blocks"] = {{"considered", report.cut.considered}, {"empty", report.cut.empty},   {"outside", report.cut.outside},
                     {"hidden", report.cut.hidden},         {"opened", report.cut.opened}, {"drawn", report.cut.drawn}};
   json["total_milliseconds"] = report.totalMilliseconds;

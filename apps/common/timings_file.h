@@ -27,6 +27,7 @@ struct RunReport {
   VolumeMemory memory;
   std::uint64_t devicePeak = 0;    ///< largest number of bytes allocated on the device at any time
   CutCounts cut;                   ///< cut of the last frame
+  std::optional<ScatteringFacts> scattering;  ///< of the last frame
 };
 
 /// Prints the messages of --verbose.
@@ -36,6 +37,7 @@ void logStages(const RunReport& report);
 /// {"version", "device": {"name", "type", "uuid", "driver"}, "options": {NAME: VALUE},
 ///  "stages": [{"name", "milliseconds", "on_device"}], "voxels", "visible_voxels" (where they were counted),
 ///  "memory_bytes": {"stored", "peak"},
+///  "scattering" (with such light): {"cells", "cell_edge", "sets", "residual"},
 ///  "blocks": {"considered", "empty", "outside", "hidden", "opened", "drawn": [by level, voxels first]},
 ///  "total_milliseconds"}.
 /// Atomic.

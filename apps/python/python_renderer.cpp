@@ -57,7 +57,9 @@ py::object render(SceneRenderer& renderer, const py::args& more, const py::objec
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    image = renderer.render(*renderer.read(options), wanted.channels, report);
+    const std::unique_ptr<const KeywordOptions> frame = renderer.read(options);
+    for (const std::string& warning : frame->warnings) tellPython(warning, true);
+    image = renderer.render(*frame, wanted.channels, report);
   }
   return wanted.resultOf(image);
 }

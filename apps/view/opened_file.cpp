@@ -1,5 +1,7 @@
 #include "apps/view/opened_file.h"
 
+#include <spdlog/spdlog.h>
+
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -17,6 +19,7 @@ bool hasExtension(const std::string& file, const char* extension) {
 }
 
 void openScene(ViewState& state, const std::string& file) {
+  for (const std::string& warning : SceneFile(file).warnings()) spdlog::warn("{}", warning);
   SceneDescription scene = readScene(file);
   const std::optional<Sequence> sequence = takeVolume(scene);
   scene.camera.size = state.scene.camera.size;

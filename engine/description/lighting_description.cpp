@@ -52,8 +52,7 @@ std::optional<Lighting> LightingDescription::resolve(const Volume& volume, const
   if (ambient) lighting.ambient = *ambient;
   lighting.tint = tint.value_or(lighting.tint);
   lighting.phaseG = phaseG.value_or(lighting.phaseG);
-  lighting.scattering = scattering.value_or(kDefaultScattering);
-  lighting.scatteringScale = scatteringScale.value_or(lighting.scatteringScale);
+  lighting.scattering = scattering.value_or(kAllOrders);
   lighting.attenuation = attenuation.value_or(LightAttenuation::Auto);
   if (environment) {
     auto around = std::make_shared<Environment>(readEnvironment(*environment));

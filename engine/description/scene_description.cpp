@@ -9,20 +9,11 @@
 #include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/visibility/detail_rule.h"
-#include "engine/volume/emission_light.h"
 #include "engine/volume/subject.h"
 
 namespace freevoxels {
 
 namespace {
-
-/// The light that the volume's own emission throws on it, where it is lit. The outline of a baked volume has no voxels; who draws it in
-/// pieces sums up their light.
-void makeEmissionLight(Scene& scene) {
-  scene.classification.emissionLight = nullptr;
-  if (scene.classification.emission && scene.lighting && !scene.volume->scalars.bricks().empty())
-    scene.classification.emissionLight = std::make_shared<const EmissionLight>(*scene.volume, scene.classification);
-}
 
 /// The double with the fewest digits that rounds to this float.
 double shortest(float value) {
@@ -61,7 +52,6 @@ LightingDescription resolvedLighting(const LightingDescription& given, const std
                                   .tint = lighting->tint,
                                   .phaseG = lighting->phaseG,
                                   .scattering = lighting->scattering,
-                                  .scatteringScale = lighting->scatteringScale,
                                   .attenuation = given.attenuation};
   for (const Light& light : lighting->lights) description.lights.push_back({.light = light, .hasIntensity = true});
   if (!lighting->lights.empty()) description.shading = lighting->surface > 0.0 ? Shading::Gradient : Shading::Scatter;
@@ -166,7 +156,6 @@ Classification SceneDescription::resolveClassification(const Volume& volume) con
 void SceneDescription::resolveView(Scene& scene) const {
   scene.camera = cameras(*scene.volume, scene.classification).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
-  makeEmissionLight(scene);
 }
 
 Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
@@ -181,7 +170,6 @@ Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Vo
   }
   Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
   scene.classification = fixed.resolveClassification(*scene.volume);
-  makeEmissionLight(scene);
   return scene;
 }
 
@@ -209,9 +197,8 @@ SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCou
 
 std::string rendererText(const SceneDescription& description, const Scene& scene) {
   const TableSettings table = description.method.table();
-  // Blocks store the scattered light of the emission together with the emission.
-  return fmt::format("{}table={} {} {} {} emission-light={}", textOf(description.resolved(scene), {"classification", "emission"}), int(table.directions),
-                     int(table.code), int(table.filter), table.pathLengthCorrection, scene.classification.emissionLight != nullptr);
+  return fmt::format("{}table={} {} {} {}", textOf(description.resolved(scene), {"classification", "emission"}), int(table.directions),
+                     int(table.code), int(table.filter), table.pathLengthCorrection);
 }
 
 }  // namespace freevoxels

@@ -37,8 +37,6 @@ inline bool operator==(const PixelRectangle& a, const PixelRectangle& b) {
 /// Largest number of pixels along an edge of an image, and of voxels along an edge of a procedural volume.
 inline constexpr int kMaxResolution = 2048;
 inline constexpr int kDefaultResolution = 128;
-/// Default number of orders of scattering.
-inline constexpr int kDefaultScattering = 3;
 /// The text of options that leave out what is there by default.
 inline constexpr const char* kNone = "none";
 /// Frames of a turn around the volume.
@@ -159,8 +157,7 @@ struct LightingDescription {
   std::optional<double> environmentRotation, environmentIntensity;  ///< as in Environment
   std::optional<glm::dvec3> tint;                ///< kMinTint to kMaxTint
   std::optional<double> phaseG;                  ///< -kMaxPhaseG to kMaxPhaseG
-  std::optional<int> scattering;                 ///< orders, 1 to kMaxOctaves; else kDefaultScattering
-  std::optional<double> scatteringScale;         ///< 0 to 1
+  std::optional<int> scattering;                 ///< orders, kAllOrders or 1 to kMaxOrders; else kAllOrders
   std::optional<LightAttenuation> attenuation;   ///< else Auto
   std::optional<Shading> shading;                ///< else Auto
   std::optional<double> surface;                 ///< Lighting::surface where there are surfaces, 0 to 1; else 1

@@ -279,8 +279,12 @@ void addLighting(std::vector<SceneField>& fields) {
   section.add("light-attenuation", &Lit::attenuation, words(kLightAttenuationWords));
   section.add("shading", &Lit::shading, words(kShadingWords)).replaces = {"surface-share"};
   section.add("surface-share", &Lit::surface, numbers<double>({.form = "S", .range = kUnit}));
-  section.add("scattering", &Lit::scattering, numbers<int>({.form = "N", .range = {1.0, double(kMaxOctaves)}, .whole = true}));
-  section.add("scattering-scale", &Lit::scatteringScale, numbers<double>({.form = "S", .range = kUnit}));
+  Codec<int> orders = numbers<int>({.form = "all|N", .range = {1.0, double(kMaxOrders)}, .whole = true});
+  orders.read = [number = orders.read](const std::string& name, const std::string& given) {
+    return given == kAllOrdersWord ? kAllOrders : number(name, given);
+  };
+  orders.text = [number = orders.text](const int& count) { return count == kAllOrders ? std::string(kAllOrdersWord) : number(count); };
+  section.add("scattering", &Lit::scattering, orders);
   addLights(section);
   Codec<glm::dvec3> ambient = numbers<glm::dvec3>({.form = "R,G,B", .range = kPositive});
   ambient.read = [](const std::string& name, const std::string& text) {

@@ -24,6 +24,7 @@ struct Words {
 };
 inline const Words<ClassificationOrder> kOrderWords{{"post", "pre"}};
 inline const Words<Shading> kShadingWords{{"auto", "scatter", "gradient"}};
+inline constexpr const char* kAllOrdersWord = "all";  ///< kAllOrders
 inline const Words<LightAttenuation> kLightAttenuationWords{{"table", "exact", "auto"}};
 inline const Words<Draw> kDrawWords{{"gather", "splats"}};
 inline const Words<Composite> kCompositeWords{{"normalised", "additive", "sorted"}};

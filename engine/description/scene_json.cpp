@@ -128,6 +128,11 @@ bool isFormerDefault(const SceneField& field, const Json& value) {
   return (field.name == "draw" && value == "auto") || (field.name == "attenuation" && (value == "auto" || value == "exact"));
 }
 
+/// Whether the key is one of earlier versions that has no effect any more.
+bool isFormerKey(const std::string& section, const std::string& key) {
+  return section == "light" && key == "scattering-scale";
+}
+
 }  // namespace
 
 template <typename... Args>
@@ -172,6 +177,7 @@ void SceneFile::applyTo(SceneDescription& description, const std::function<bool(
   std::vector<const SceneField*> given;
   for (const auto& [section, keys] : root_->items())
     for (const auto& [key, value] : keys.items()) {
+      if (isFormerKey(section, key)) continue;
       const SceneField& field = find(section, key);
       if ((wanted && !wanted(field)) || isFormerDefault(field, value)) continue;
       const auto texts = fieldTexts(field, value, file_.parent_path(), fmt::format("scene '{}': {}", file_.string(), quoted(field)));
@@ -184,6 +190,16 @@ void SceneFile::applyTo(SceneDescription& description, const std::function<bool(
         if (field.isOrExcludes(*other)) failHere("{} and {} exclude each other: keep one of them", quoted(field), quoted(*other));
       given.push_back(&field);
     }
+}
+
+std::vector<std::string> SceneFile::warnings() const {
+  std::vector<std::string> result;
+  for (const auto& [section, keys] : root_->items())
+    for (const auto& [key, value] : keys.items())
+      if (isFormerKey(section, key))
+        result.push_back(fmt::format("scene '{}': {} is of an earlier version and has no effect: light is scattered as {} says",
+                                     file_.string(), quoted(section, key), quoted("light", "scattering")));
+  return result;
 }
 
 SceneDescription readScene(const fs::path& file) {

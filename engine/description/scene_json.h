@@ -26,6 +26,9 @@ class SceneFile {
   /// fields that exclude each other.
   void applyTo(SceneDescription& description, const std::function<bool(const SceneField&)>& wanted = {}) const;
 
+  /// Sentences for the user about keys of earlier versions, which applyTo() passes over.
+  std::vector<std::string> warnings() const;
+
  private:
   template <typename... Args>
   [[noreturn]] void failHere(const std::string& format, Args&&... args) const;

@@ -5,7 +5,6 @@
 #include <array>
 #include <cmath>
 
-#include "embedded/ambient_codes.h"
 #include "embedded/light_depths.h"
 #include "embedded/surface_gradients.h"
 #include "engine/core/error.h"
@@ -31,30 +30,22 @@ glm::dvec3 unpackGradient(std::uint32_t bits) {
 
 bool GatherVolume::lightsSamples(const Lighting* lighting) {
   if (lighting == nullptr) return false;
-  if (lighting->lights.empty()) return lighting->hasAmbient();
-  return lighting->lights.size() <= std::size_t(shader::kMaxSampleLights) && lighting->attenuation == LightAttenuation::Exact;
+  return lighting->lights.empty() ||
+         (lighting->lights.size() <= std::size_t(shader::kMaxSampleLights) && lighting->attenuation == LightAttenuation::Exact);
 }
 
 /// Keeps the codes until the lights move.
-void GatherVolume::prepareSampled(const Lighting* lighting, std::vector<StageTime>& times) {
+void GatherVolume::prepareSampled(const Lighting* lighting) {
+  isSampled_ = lighting != nullptr;
   const std::vector<Light> lights = lighting != nullptr ? lighting->lights : std::vector<Light>();
-  const int channels = lighting != nullptr && lighting->hasAmbient() ? AmbientPass::channelCount(*lighting) : 0;
-  const bool stand = channels == ambientChannels_ && std::ranges::equal(lights, sampled_, [](const Light& a, const Light& b) {
-    return a.place == b.place && a.atInfinity == b.atInfinity;
-  });
+  const bool stand = std::ranges::equal(lights, sampled_,
+                                        [](const Light& a, const Light& b) { return a.place == b.place && a.atInfinity == b.atInfinity; });
   if (!stand) dropLightCodes();
   sampled_ = lights;
-  ambientChannels_ = channels;
-  const int edge = channels > 0 ? ambientCellEdge(volume_.dimensions, lighting->phaseG != 0.0) : 0;
-  if (surroundings_ == nullptr && edge > 0 && (!ownAmbient_ || ownAmbient_->edge() != edge)) {
-    const StageTimer timer(times, "ambient cells");
-    dropLightCodes();
-    ownAmbient_.emplace(device_, volume_, classification_, edge);
-  }
   const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
-  for (int slot = 0; slot < shader::kMaxLightSlots; ++slot) {
+  for (int slot = 0; slot < shader::kMaxSampleLights; ++slot) {
     Buffer& codes = lightCodes_[std::size_t(slot)];
-    if (slot >= lightSlots())
+    if (slot >= sampleLights())
       codes = {};
     else if (codes.bytes() == 0)
       codes = Buffer(device_, bytes, MemoryUse::Device, "codes of light");
@@ -71,15 +62,17 @@ void GatherVolume::dropLightCodes() {
 
 /// Computes the codes of all blocks of bricks, occupied or not.
 void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
-  if (surroundings_ == nullptr && ambientChannels_ > 0 && ownAmbient_->record(commands, *shading.lighting, shading.frame.eye)) dropLightCodes();
   if (!lacksLevels(lightLevels_)) return;
+  if (surroundings_ != nullptr) {  // whose codes are uploaded
+    lightLevels_ |= wantedLevels_;
+    return;
+  }
   commands.beginPass("light depths");
   if (lightLevels_ == 0)
-    for (int slot = surroundings_ != nullptr ? sampleLights() : 0; slot < lightSlots(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
+    for (int slot = 0; slot < sampleLights(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
   for (int level = 0; level <= built_.volume.hierarchy.top(); ++level) {
     if (!lacksLevel(lightLevels_, level) || firstBricks_[std::size_t(level)] == firstBricks_[std::size_t(level) + 1]) continue;
-    if (surroundings_ == nullptr) recordLightDepths(commands, shading, level);
-    recordAmbientCodes(commands, level);
+    recordLightDepths(commands, shading, level);
   }
   commands.barrier(kComputeStage, kComputeStage);
   lightLevels_ |= wantedLevels_;
@@ -105,27 +98,6 @@ void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading,
                                        .extinction = addressWords(volume.extinction.address()),
                                        .depths = addressWords(lightCodes_[std::size_t(light)].address()),
                                        .rays = addressWords(rays.depths().address())};
-    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
-  }
-}
-
-void GatherVolume::recordAmbientCodes(Commands& commands, int level) {
-  if (ambientChannels_ == 0) return;
-  const Pipeline pass = makeComputePipeline(device_, shaders::ambient_codes);
-  const std::array<Binding, 2> bindings{&brickCellTexels_, &ambient().light()};
-  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
-  const glm::ivec3 cells = ambient().cells();
-  const int cellCount = cells.x * cells.y * cells.z;
-  for (int channel = 0; channel < ambientChannels_; ++channel) {
-    const shader::AmbientCodesPush push{.cells = cells,
-                                        .cellEdge = ambient().edge(),
-                                        .blockEdge = 1 << level,
-                                        .firstBlock = surroundings_ != nullptr ? surroundings_->first : glm::ivec3(0),
-                                        .firstLight = channel * cellCount,
-                                        .firstWeight = ambient().hasWeights() ? ambientChannels_ * cellCount : -1,
-                                        .firstBrick = first,
-                                        .count = count,
-                                        .codes = addressWords(lightCodes_[std::size_t(sampleLights() + channel)].address())};
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
   }
 }
@@ -163,7 +135,7 @@ void GatherVolume::recordLightQuads(Commands& commands, int axis) {
   Quads& quads = quads_[std::size_t(axis)];
   if (!lacksLevels(quads.lightLevels)) return;
   commands.beginPass("brick quads");
-  for (std::size_t slot = 0; slot < std::size_t(lightSlots()); ++slot) {
+  for (std::size_t slot = 0; slot < std::size_t(sampleLights()); ++slot) {
     const auto make = [&](int level, std::uint32_t first, std::uint32_t end) {
       const shader::GatherLevel& cells = levels_[std::size_t(level)];
       const shader::CodeBricks codes{
@@ -183,7 +155,7 @@ void GatherVolume::recordLightQuads(Commands& commands, int axis) {
 }
 
 void GatherVolume::describeLights(shader::GatherFrame& frame) const {
-  if (lightSlots() == 0) return;
+  if (!isSampled_) return;
   const DeviceVolume& volume = built_.volume;
   const glm::dmat3 linear(volume.indexToWorld);
   const glm::ivec3 dimensions = surroundings_ != nullptr ? surroundings_->dimensions : volume.layout.dimensions;
@@ -201,11 +173,11 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
     frame.lights[i].lightsFirst = glm::vec3(glm::lessThan(fromFirst, glm::dvec3(0.0)));
     frame.lights[i].lightsLast = glm::vec3(glm::greaterThan(fromLast, glm::dvec3(0.0)));
   }
-  if (ambientChannels_ > 0) frame.ambient = ambient().unshadowed();
-  frame.tint = lighting_->tint;
+  if (hasScattered()) frame.scattered = scattered_->onDevice();
+  frame.tint = lighting_->tint * colorNarrowing_;
+  frame.forward = float(splitPhase(*lighting_).forward);
   frame.phaseG = float(lighting_->phaseG);
   frame.surface = float(lighting_->surface);
-  frame.octaveScale = float(lighting_->scatteringScale);
   frame.nearestLight2 = float(double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize);
   frame.indexToWorld = linear;
   frame.gradients = addressWords(gradients_.address());
@@ -219,7 +191,7 @@ std::vector<GatherLight> GatherVolume::downloadLight() const {
     return result;
   };
   std::vector<std::vector<std::uint32_t>> codes;
-  for (int slot = 0; slot < lightSlots(); ++slot) codes.push_back(words(lightCodes_[std::size_t(slot)]));
+  for (int slot = 0; slot < sampleLights(); ++slot) codes.push_back(words(lightCodes_[std::size_t(slot)]));
   const std::vector<std::uint32_t> gradients = hasSurfaces() ? words(gradients_) : std::vector<std::uint32_t>();
   std::vector<GatherLight> levels(levels_.size());
   for (std::size_t level = 0; level < levels_.size(); ++level) {
@@ -227,7 +199,6 @@ std::vector<GatherLight> GatherVolume::downloadLight() const {
     const shader::GatherLevel& cells = levels_[level];
     GatherLight& light = levels[level];
     light.depths.resize(std::size_t(sampleLights()));
-    light.ambient.resize(std::size_t(ambientChannels_));
     glm::ivec3 block;
     for (block.z = 0; block.z < cells.dimensions.z; ++block.z)
       for (block.y = 0; block.y < cells.dimensions.y; ++block.y)
@@ -239,8 +210,7 @@ std::vector<GatherLight> GatherVolume::downloadLight() const {
                                      std::size_t(local.y)) * shader::kGatherBrickEdge + std::size_t(local.x);
           for (std::size_t slot = 0; slot < codes.size(); ++slot) {
             const double root = double(codes[slot][index / 2] >> (index % 2 * 16) & 0xffffu) / 65535.0;
-            auto& depths = slot < light.depths.size() ? light.depths[slot] : light.ambient[slot - light.depths.size()];
-            depths.push_back(kOpaqueDepth * root * root);
+            light.depths[slot].push_back(kOpaqueDepth * root * root);
           }
           if (!gradients.empty()) light.gradients.push_back(unpackGradient(gradients[index]));
         }

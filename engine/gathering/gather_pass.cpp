@@ -41,16 +41,14 @@ const Shader& gatherShader(const GatherVolume& volume, bool cube) {
         {&gather_post_lit, &gather_post_lit_cube},
         {&gather_post_surfaces, &gather_post_surfaces_cube}}},
   }};
-  const bool sampled = volume.sampleLights() > 0 || volume.ambientChannels() > 0;
-  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : sampled ? 1 : 0][cube ? 1 : 0];
+  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][cube ? 1 : 0];
 }
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, const Shader& shader) {
-  return makeComputePipeline(
-      device, shader,
-      {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
-       std::uint32_t(volume.sampleLights()), std::uint32_t(volume.ambientChannels()), std::uint32_t(volume.octaves()), volume.isTinted(),
-       volume.hasEmissionApart(), levels && volume.hasScalars()});
+  return makeComputePipeline(device, shader,
+                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
+                              std::uint32_t(volume.sampleLights()), volume.hasScattered(), volume.hasFlux(), volume.isTinted(),
+                              volume.hasEmissionApart(), levels && volume.hasScalars()});
 }
 
 std::uint64_t latticeSize(const shader::GatherFrame& frame) {
@@ -62,7 +60,9 @@ std::uint64_t latticeSize(const shader::GatherFrame& frame) {
 GatherPass::GatherPass(const Device& device)
     : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
              VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
-      noDistance_(device, glm::ivec2(1), kTargetScalarFormat, "no distance") {}
+      noDistance_(device, glm::ivec2(1), kTargetScalarFormat, "no distance"),
+      noLight_(device, sizeof(glm::vec4), MemoryUse::Device, "no scattered light", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
+      noLightTexels_(device, noLight_) {}
 
 void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels) {
   for (int axis = 0; axis < 3; ++axis)
@@ -109,6 +109,7 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
                                   &volume.transferTable(),
                                   &volume.skips()};
     for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
+    bindings.emplace_back(volume.hasScattered() ? &volume.scatteredTexels() : &noLightTexels_);
     bindings.emplace_back(&volume.gradients());
     const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, shader);
     if (samples.step != 0) {

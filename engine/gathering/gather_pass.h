@@ -75,6 +75,8 @@ class GatherPass {
   SampleRectangle seen_;   ///< of the last frame: outside of it sums are 0 and not stored
   Buffer frame_;  ///< shader::GatherFrame
   RenderTarget noDistance_;  ///< bound where a frame has none, of the format that the shader declares
+  Buffer noLight_;           ///< and where it has no scattered light
+  TexelView noLightTexels_;
   Sums gathered_, smoothed_, rows_;
   Adaptive adaptive_;
 };

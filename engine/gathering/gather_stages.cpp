@@ -10,6 +10,7 @@ GatherStages downloadGatherStages(const Device& device, const BuiltVolume& built
                       .medium = {},
                       .blocks = volume.downloadBlocks(),
                       .light = volume.downloadLight(),
+                      .scattered = volume.downloadScattered(),
                       .gathered = pass.downloadGathered(),
                       .smoothed = volume.hasScalars() ? std::vector<GatherSums>() : pass.downloadSmoothed(),
                       .image = {}};

@@ -3,10 +3,12 @@
 // with a reference that is given what the stage before it made.
 
 #include <glm/glm.hpp>
+#include <optional>
 #include <vector>
 
 #include "engine/image/image.h"
 #include "engine/octree/level_data.h"
+#include "engine/scene/scattered_field.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -41,8 +43,7 @@ struct GatherBlocks {
 
 /// The light at the blocks of one level, x fastest, where lights are evaluated at samples. Blocks without bricks have 0.
 struct GatherLight {
-  std::vector<std::vector<double>> depths;   ///< by light: optical depth towards it, for scalars from the next layer on that way
-  std::vector<std::vector<double>> ambient;  ///< by channel: optical depth that ambient light has passed
+  std::vector<std::vector<double>> depths;  ///< by light: optical depth towards it, for scalars from the next layer on that way
   /// Per block, of scalars in intervals of the transfer function's table, or of extinction; empty without surfaces.
   std::vector<glm::dvec3> gradients;
 };
@@ -53,6 +54,7 @@ struct GatherStages {
   std::vector<LevelData> medium;        ///< by level: what the blocks are made of; empty where the frame reads no blocks
   std::vector<GatherBlocks> blocks;     ///< by level, for the same levels
   std::vector<GatherLight> light;       ///< by level; empty where the frame reads none
+  std::optional<ScatteredField> scattered;  ///< none without such light
   std::vector<GatherSums> gathered;     ///< at the samples, x fastest
   std::vector<GatherSums> smoothed;     ///< after the stencil, which scalars do not have
   Image image;

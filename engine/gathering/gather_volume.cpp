@@ -169,7 +169,7 @@ const TexelView& GatherVolume::transferTable() const {
   return hasScalars() ? built_.volume.scalarBricks->tableTexels : built_.volume.extinctionQuads;
 }
 
-void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times) {
+void GatherVolume::prepare(const Shading& shading) {
   if (built_.volume.lacksScalarBricks)
     fail(ErrorKind::OutOfMemory,
          "the volume's scalars take more memory than there is, which classification after interpolation needs: "
@@ -179,15 +179,20 @@ void GatherVolume::prepare(const Shading& shading, std::vector<StageTime>& times
   const bool lit = shading.lighting != nullptr && !samples;
   const bool viewDependent = lit && dependsOnView(*shading.lighting);
   const bool emissionWasApart = hasEmissionApart();
-  const bool sameSources = lit == lit_ && !viewDependent && !viewDependent_ && (!lit || lighting_ == *shading.lighting);
+  const std::uint64_t version = shading.scattered != nullptr ? shading.scattered->version() : 0;
+  const bool sameSources =
+      lit == lit_ && !viewDependent && !viewDependent_ && (!lit || (lighting_ == *shading.lighting && version == scatteredVersion_));
   sourceUnit_ = sourceUnit(built_.volume, lit ? shading.lighting : nullptr);
   lit_ = lit;
   viewDependent_ = viewDependent;
+  scattered_ = shading.scattered;
+  scatteredVersion_ = version;
+  colorNarrowing_ = shading.frame.setup.lighting.narrowing;
   if (shading.lighting != nullptr)
     lighting_ = *shading.lighting;
   else
     lighting_.reset();
-  prepareSampled(samples ? shading.lighting : nullptr, times);
+  prepareSampled(samples ? shading.lighting : nullptr);
   wantedLevels_ = 0;
   for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
     wantedLevels_ |= 1u << level;
@@ -253,7 +258,7 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
       return store.bytes() >= (needed ? count : 1) * bytes;
     };
     for (std::size_t i = 0; i < there.light.size(); ++i)
-      if (!holds(there.light[i], i < std::size_t(lightSlots()), sizeof(glm::uvec2))) return false;
+      if (!holds(there.light[i], i < std::size_t(sampleLights()), sizeof(glm::uvec2))) return false;
     return holds(there.medium, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
            holds(there.extra, hasTowards() || hasEmissionApart(), sizeof(glm::uvec4));
   };
@@ -268,17 +273,17 @@ void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
   quads.source = makeStore(hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
   quads.extra = makeStore(hasTowards() || hasEmissionApart(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "extra quads");
   for (std::size_t i = 0; i < quads.light.size(); ++i)
-    quads.light[i] = makeStore(i < std::size_t(lightSlots()), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light quads");
+    quads.light[i] = makeStore(i < std::size_t(sampleLights()), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light quads");
 }
 
 void GatherVolume::record(Commands& commands, const Shading& shading) {
   if (lacksLevels(shadedLevels_)) recordShading(commands, shading);
-  if (lightSlots() > 0) recordLightCodes(commands, shading);
+  if (sampleLights() > 0) recordLightCodes(commands, shading);
   if (hasSurfaces()) recordGradients(commands);
   for (int axis = 0; axis < 3; ++axis) {
     if (!shading.axes[std::size_t(axis)]) continue;
     if (lacksLevels(quads_[std::size_t(axis)].levels)) recordQuads(commands, axis);
-    if (lightSlots() > 0) recordLightQuads(commands, axis);
+    if (sampleLights() > 0) recordLightQuads(commands, axis);
   }
 }
 
@@ -351,6 +356,7 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
   frame.color = built_.volume.albedo / float(sourceUnit_);
+  frame.colorNarrowing = colorNarrowing_;
   describeLights(frame);
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
 }

@@ -11,7 +11,7 @@
 
 #include "engine/attenuation/attenuation_table.h"
 #include "engine/gathering/gather_stages.h"
-#include "engine/lighting/ambient_pass.h"
+#include "engine/lighting/scattering_solver.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/splat_pass.h"
 #include "engine/volume/coarse_cells.h"
@@ -26,7 +26,6 @@ class LightPass;
 struct SurroundingLight {
   glm::ivec3 dimensions{0};      ///< of the volume
   glm::ivec3 first{0};           ///< the box's first voxel in the volume
-  const AmbientPass* ambient = nullptr;  ///< of the volume, up to date; null without ambient light
   /// Codes of depths towards a light, 16 bits a block, in the order of the box's bricks; those of brick 0 are 0.
   std::function<std::vector<std::uint16_t>(int light, const GatherVolume& box)> codes;
 };
@@ -46,15 +45,15 @@ class GatherVolume {
     const AttenuationTable* table;  ///< null if no light needs it
     const Lighting* lighting;
     const LightPass* lights;   ///< prepared for the frame; null without lights
+    const ScatteringSolver* scattered;  ///< solved for the frame, for the whole volume; null without such light
     std::array<bool, 3> axes;  ///< axes along which rays march
     std::uint64_t keptQuadBytes = 0;  ///< quads of other axes are kept for later frames up to so many bytes
   };
-  /// Whether the transmittance of all lights is evaluated at the samples: for few lights from their rays, and
-  /// for ambient light. With more lights, or with shadows from the table, shading is per voxel.
+  /// Whether light is evaluated at the samples: from the rays of few lights, and what was scattered before. With more lights, or with
+  /// shadows from the table, shading is per voxel.
   static bool lightsSamples(const Lighting* lighting);
-  /// Allocates what the frame needs and adds the time of work on the host to `times`. Fails with
-  /// ErrorKind::OutOfMemory.
-  void prepare(const Shading& shading, std::vector<StageTime>& times);
+  /// Allocates what the frame needs. Fails with ErrorKind::OutOfMemory.
+  void prepare(const Shading& shading);
   /// Records the shading of the blocks that the frame reads, except for those that are still valid. Must be
   /// called after prepare() with the same arguments.
   void record(Commands& commands, const Shading& shading);
@@ -69,7 +68,7 @@ class GatherVolume {
   /// The quads of one axis.
   struct Quads {
     QuadStore medium, source, extra;
-    std::array<QuadStore, shader::kMaxLightSlots> light;  ///< codes of light (lightCodes_)
+    std::array<QuadStore, shader::kMaxSampleLights> light;  ///< codes of light (lightCodes_)
     std::uint32_t levels = 0;  ///< a bit for each level that exists
     std::uint32_t lightLevels = 0;
     std::uint64_t bytes() const;
@@ -78,6 +77,9 @@ class GatherVolume {
   std::vector<GatherBlocks> downloadBlocks() const;
   /// By level, of the levels whose light the last frame read; others are empty. For validation and tests. Waits.
   std::vector<GatherLight> downloadLight() const;
+
+  /// None without such light. Waits.
+  std::optional<ScatteredField> downloadScattered() const { return hasScattered() ? std::optional(scattered_->download()) : std::nullopt; }
 
   /// The bricks and the cells that rays skip, on the host, where parts of the volume are chosen.
   struct BrickCells {
@@ -98,16 +100,21 @@ class GatherVolume {
   /// Whether source terms depend on the direction to the eye.
   bool hasTowards() const { return lit_ && !viewDependent_; }
   /// Whether emission is added to the light of samples, apart from the source terms.
-  bool hasEmissionApart() const { return lightSlots() > 0 && built_.volume.hasEmission(); }
+  bool hasEmissionApart() const { return isSampled_ && built_.volume.hasEmission(); }
   /// Whether blocks have their own source terms; otherwise all have the same albedo.
   bool hasColors() const;
   /// Whether voxels are classified after interpolation: quads of the finest level then hold codes of scalars.
   bool hasScalars() const;
   bool isLit() const { return lit_; }
   int sampleLights() const { return int(sampled_.size()); }
-  int ambientChannels() const { return ambientChannels_; }
-  int octaves() const { return lighting_ ? lighting_->scattering : 1; }
-  bool isTinted() const { return lighting_ && lighting_->tint != glm::dvec3(1.0); }
+  /// Whether light is evaluated at samples.
+  bool isSampled() const { return isSampled_; }
+  bool hasScattered() const { return isSampled_ && scattered_ != nullptr; }
+  /// With scattered light.
+  const TexelView& scatteredTexels() const { return scattered_->texels(); }
+  bool hasFlux() const { return hasScattered() && scattered_->onDevice().moments > 1; }
+  /// Whether the extinction of light differs between the colours, or from that of alpha.
+  bool isTinted() const { return lighting_ && (lighting_->isTinted() || splitPhase(*lighting_).forward > 0.0); }
   /// Whether surfaces are lit at samples.
   bool hasSurfaces() const { return sampleLights() > 0 && lighting_->surface > 0.0; }
   /// Whether quads are read by address, in pieces of shader::kPieceBricksLog2, because a texel buffer or an allocation cannot hold all.
@@ -123,9 +130,7 @@ class GatherVolume {
   bool lacksLevel(std::uint32_t made, int level) const { return ((wantedLevels_ & ~made) >> level & 1u) != 0; }
   void makeBricks(std::vector<StageTime>& times);
   void makeSources();
-  void prepareSampled(const Lighting* lighting, std::vector<StageTime>& times);
-  int lightSlots() const { return sampleLights() + ambientChannels_; }
-  const AmbientPass& ambient() const { return surroundings_ != nullptr ? *surroundings_->ambient : *ownAmbient_; }
+  void prepareSampled(const Lighting* lighting);
   void describeLights(shader::GatherFrame& frame) const;
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
@@ -142,7 +147,6 @@ class GatherVolume {
   void dropLightCodes();
   void recordLightCodes(Commands& commands, const Shading& shading);
   void recordLightDepths(Commands& commands, const Shading& shading, int level);
-  void recordAmbientCodes(Commands& commands, int level);
   void recordLightQuads(Commands& commands, int axis);
   void recordGradients(Commands& commands);
 
@@ -172,11 +176,12 @@ class GatherVolume {
   double sourceUnit_ = 1.0;
   std::optional<Lighting> lighting_;
   std::vector<Light> sampled_;  ///< lights that are evaluated at samples
-  int ambientChannels_ = 0;     ///< channels of ambient light evaluated at samples; 0 if there is none
-  std::optional<AmbientPass> ownAmbient_;
-  /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light, and for each ambient
-  /// channel that of -log of the fraction of the unshadowed light that reaches it.
-  std::array<Buffer, shader::kMaxLightSlots> lightCodes_;
+  bool isSampled_ = false;
+  const ScatteringSolver* scattered_ = nullptr;
+  std::uint64_t scatteredVersion_ = 0;  ///< that the source terms were made for
+  glm::dvec3 colorNarrowing_{1.0};      ///< factor of the extinction that is left, as what is scattered forwards goes on
+  /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light.
+  std::array<Buffer, shader::kMaxSampleLights> lightCodes_;
   std::uint32_t lightLevels_ = 0;
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
   TexelView gradientTexels_;  ///< of gradients_, unless quads are in pieces

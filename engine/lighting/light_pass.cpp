@@ -48,14 +48,6 @@ std::vector<RaySource> sourcesOf(const Lighting& lighting, const DeviceVolume& v
   return sources;
 }
 
-std::vector<glm::dvec4> lightAndShares(const Lighting& lighting, DirectionSet set, const glm::dmat4& indexToWorld) {
-  const std::vector<glm::dvec3> light = directionLight(lighting, set, indexToWorld);
-  const std::vector<double> shares = directionShares(set, indexToWorld);
-  std::vector<glm::dvec4> result;
-  for (std::size_t i = 0; i < light.size(); ++i) result.emplace_back(light[i], shares[i]);
-  return result;
-}
-
 }  // namespace
 
 RayMemory lightRayMemory(const DeviceVolume& volume, const Lighting& lighting) {
@@ -105,8 +97,6 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
                                          const Progress& progress) {
   const Lighting& lighting = *settings.lighting;
   const DirectionSet set = table.directions;
-  if (!placed_ || placed_->ambient != lighting.ambient || placed_->environment != lighting.environment)
-    fromAll_ = lightAndShares(lighting, set, volume.indexToWorld);
   const bool stand =
       placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation && placedScalars_ == scalars;
   if (!stand) {
@@ -121,20 +111,16 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
   }
   placed_ = lighting;
   placedScalars_ = scalars;
-  shader::FrameLighting frame{
-      .lightCount = int(lighting.lights.size()),
-      .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : int(settings.tableLookup()),
-      .hasAmbient = lighting.hasAmbient() ? 1 : 0,
-      .tint = lighting.tint,
-      .phaseG = float(lighting.phaseG),
-      .surface = float(lighting.surface),
-      .octaves = lighting.scattering,
-      .octaveScale = float(lighting.scatteringScale),
-      .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld))),
-      .scalars = volume.scalarBricks ? volume.scalarBricks->onDevice() : shader::CodeBricks()};
-  for (int i = 0; i < directionCount(set); ++i)
-    frame.ambientByDirection[cellNumber(set, directionCell(set, i))] = glm::vec4(fromAll_[std::size_t(i)]);
-  return frame;
+  return {.lightCount = int(lighting.lights.size()),
+          .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : int(settings.tableLookup()),
+          .tint = lighting.tint,
+          .forward = 0.0f,
+          .narrowing = glm::vec3(1.0f),
+          .phaseG = float(lighting.phaseG),
+          .surface = float(lighting.surface),
+          .scattered = {},
+          .gradientToWorld = glm::transpose(glm::inverse(glm::dmat3(volume.indexToWorld))),
+          .scalars = volume.scalarBricks ? volume.scalarBricks->onDevice() : shader::CodeBricks()};
 }
 
 }  // namespace freevoxels

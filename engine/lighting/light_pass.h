@@ -27,7 +27,7 @@ class LightPass {
  public:
   explicit LightPass(const Device& device) : device_(device), beyond_(device) {}
 
-  /// Prepares the lights of a frame whose attenuation is not Auto. With `scalars`, rays are swept through the
+  /// Prepares the lights of a frame whose attenuation is not Auto, without its scattered light. With `scalars`, rays are swept through the
   /// volume's scalars, otherwise through its classified voxels. Blocks until the device is done and adds the
   /// times to `times`; no frame may be in progress. An exception of `progress` abandons the work.
   shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
@@ -49,8 +49,7 @@ class LightPass {
   const Device& device_;
   EyeDepthsPass beyond_;
   bool placedScalars_ = false;
-  std::optional<Lighting> placed_;   ///< the lighting that the buffers and `fromAll_` were made for
-  std::vector<glm::dvec4> fromAll_;  ///< directionLight (rgb) and directionShares (a) by direction
+  std::optional<Lighting> placed_;   ///< the lighting that the buffers were made for
   Buffer lights_;                    ///< shader::Light
   Buffer beyondDepths_;              ///< kEyeDepthsBytes for each light inside the volume
   std::deque<RaySweep> rays_;        ///< rays of the lights; empty if they are looked up in the table

@@ -3,7 +3,6 @@
 #include <cstdint>
 #include <numeric>
 
-#include "engine/volume/emission_light.h"
 #include "engine/volume/packed_light.h"
 #include "shaders/interface.h"
 
@@ -39,28 +38,13 @@ shader::BlockStores DeviceVolume::stores() const {
           .blockColors = addressWords(blockColors.address())};
 }
 
-namespace {
-
-/// An upper bound of the largest component of the light that any voxel emits, including what it scatters of
-/// the volume's own emission.
-double brightestSource(const Classification& classification, const Volume& volume) {
-  double extinction = classify(classification, volume.maximum).extinction;
-  if (classification.transferFunction)
-    for (const TransferFunction::OpacityPoint& point : classification.transferFunction->opacity)
-      extinction = std::max(extinction, classify(classification, point.scalar).extinction);
-  const double light = classification.emissionLight ? classification.emissionLight->brightest() : 0.0;
-  return brightestLight(classification, volume) + extinction * light;
-}
-
-}  // namespace
-
 DeviceVolume outlineOnDevice(const Volume& volume, const Classification& classification) {
   return {.layout = GridLayout(volume.dimensions),
           .hierarchy = HierarchyLayout(volume.dimensions),
           .indexToWorld = volume.indexToWorld,
           .albedo = classification.albedo,
           .hasColors = volume.albedo.has_value() || classification.transferFunction.has_value(),
-          .emissionUnit = brightestSource(classification, volume) / kBrightest,
+          .emissionUnit = brightestLight(classification, volume) / kBrightest,
           .voxelSize = volume.voxelSize()};
 }
 

@@ -28,17 +28,14 @@ struct PixelMean {
 
 class Sampler {
  public:
-  Sampler(const Volume& volume, const Classification& classification, const Camera& camera,
-          const OracleSettings& settings, const Progress& progress)
+  Sampler(const Volume& volume, const Classification& classification, const Camera& camera, const OracleSettings& settings,
+          const Progress& progress)
       : settings_(settings),
         progress_(progress),
         field_(volume, classification, progress),
         rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
         indexToWorld_(volume.indexToWorld),
-        light_(settings.lighting
-                   ? std::make_unique<LightMarch>(field_, volume.indexToWorld, *settings.lighting,
-                                                  eyeSource(camera, volume.indexToWorld), settings.ambientRays, progress)
-                   : nullptr),
+        light_(settings.lighting ? std::make_unique<LightMarch>(field_, volume, classification, *settings.lighting, progress) : nullptr),
         pixels_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 
   Oracle run();

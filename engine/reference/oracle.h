@@ -26,7 +26,6 @@ struct OracleSettings {
   double tolerance = 1e-3;  ///< largest change of a pixel's premultiplied RGBA by the last doubling
   int maximumSamples = 32;  ///< most rays along an edge of a pixel: a power of two, at least 4
   std::optional<Lighting> lighting = std::nullopt;  ///< if empty, every voxel sends out its colour
-  int ambientRays = 128;                            ///< number of rays from a point for ambient light (light_march.h)
 };
 
 struct Oracle {
@@ -40,7 +39,8 @@ struct Oracle {
 /// A pixel's N starts at 2, or, if a pixel is larger than a voxel, at the number of voxels across it, up to
 /// 16. It is doubled at least once, and again while a doubling changes the pixel or one of its eight
 /// neighbours by the tolerance or more. Rays pass through the centres of N x N equal parts. Alpha is the mean
-/// of 1 - exp(-tau), exact on each ray. Light is scattered once, with shadow rays. Depth is defined as in
+/// of 1 - exp(-tau), exact on each ray. Light of lights is scattered with shadow rays, other
+/// light is found on cells (light_march.h). Depth is defined as in
 /// apps/manual/images.md, over all rays of the pixel, and is not part of the convergence test. Nothing behind
 /// the eye is drawn. The result does not depend on the number of threads.
 Oracle renderOracle(const Volume& volume, const Classification& classification, const Camera& camera,

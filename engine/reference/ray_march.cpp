@@ -212,6 +212,7 @@ class March {
   bool crossCell(const glm::vec4* corner, const glm::vec4* emission, glm::ivec3 cell, double enter, double leave);
   bool crossClassified(const glm::vec4* corner, glm::ivec3 cell, double enter, double leave);
   double absorb(double thickness);
+  glm::dvec3 lightOver(double transmittanceBefore) const;
   void addEvenly(double thickness);
   void addInterval(const Cubic& cubic, const Cubic* emission, const Depth& depth, double begin, double end,
                    double enter, double length);
@@ -262,10 +263,10 @@ bool March::crossClassified(const glm::vec4* corner, glm::ivec3 cell, double ent
     const glm::dvec4 medium = steps.mean(i);
     if (!(medium.a > 0.0)) continue;
     const double t = enter + (i + 0.5) / steps.count * (leave - enter);
-    const double energy = absorb(medium.a * length);
+    const double before = transmittance_, energy = absorb(medium.a * length);
     glm::dvec3 color = glm::dvec3(medium) / medium.a;
     if (light_) color *= light_->scattered(ray_.origin + t * ray_.direction, toEye_);
-    sum_.color += energy * color;
+    sum_.color += lightOver(before) * color;
     sum_.distance += energy * t;
   }
   return transmittance_ >= kNegligibleTransmittance;
@@ -277,6 +278,13 @@ double March::absorb(double thickness) {
   sum_.opacity += energy;
   transmittance_ -= energy;
   return energy;
+}
+
+/// The light of colour 1 from what was absorbed since the transmittance was `before`: with lights, some of what is scattered goes on.
+glm::dvec3 March::lightOver(double before) const {
+  if (!light_ || light_->narrowing() == glm::dvec3(1.0)) return glm::dvec3(before - transmittance_);
+  const glm::dvec3 n = light_->narrowing();
+  return (glm::pow(glm::dvec3(before), n) - glm::pow(glm::dvec3(transmittance_), n)) / n;
 }
 
 /// A uniform colour needs no quadrature.
@@ -309,8 +317,8 @@ void March::addInterval(const Cubic& cubic, const Cubic* emission, const Depth& 
     sum_.color += transmittance_ * (end - begin) * length * ray_.worldLength * glm::dvec3(mean);
     return;
   }
-  const double energy = absorb(depth.at(end) - before);
-  sum_.color += energy / mean.a * glm::dvec3(mean);
+  const double seenBefore = transmittance_, energy = absorb(depth.at(end) - before);
+  sum_.color += lightOver(seenBefore) / mean.a * glm::dvec3(mean);
   sum_.distance += energy / mean.a * distance;
 }
 

@@ -68,16 +68,18 @@ GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec
 }
 
 ReferenceGather::ReferenceGather(const Volume& volume, const Classification& classification, const Camera& camera,
-                                 const FrameSettings& settings)
+                                 const FrameSettings& settings, std::optional<ScatteredField> scattered)
     : volume_(volume),
       lighting_(settings.lighting),
+      scattered_(std::move(scattered)),
       size_(settings.size),
       middle_(0.5 * glm::dvec2(settings.size)),
       rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
       linear_(volume.indexToWorld),
       detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
   if (lighting_) {
-    FV_CHECK_EQ(lighting_->environment == nullptr, true);
+    forward_ = splitPhase(*lighting_).forward;
+    if (forward_ > 0.0) narrowing_ -= forward_ * ScatteringMedium(volume, classification).meanAlbedo();
     for (const Light& light : lighting_->lights) lights_.push_back(lightSource(light, volume.indexToWorld));
   }
   // Levels come in slice by slice, which may be complete only after all blocks are small.
@@ -182,14 +184,14 @@ glm::dvec3 ReferenceGather::emissionAt(const Ray& ray, const Slab& slab, int sli
   return emission;
 }
 
-void ReferenceGather::marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,
+void ReferenceGather::marchBlocks(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab,
                                   const GatherBlocks& blocks) const {
   for (int number = 0; number < slab.count; ++number) {
     const int slice = slab.slice(number);
     const double part = partOfTent(slab.ahead(ray, slice));
     if (part <= 0.0 || slice >= blocks.dimensions[slab.axis]) continue;
     const glm::dvec4 medium = blockAt(ray, slab, slice, blocks);
-    addPart(sums, transmittance, medium, part * slab.layer(ray), slab.distance(ray, slice));
+    addPart(sums, transmittance.alpha, medium, part * slab.layer(ray), slab.distance(ray, slice));
   }
 }
 
@@ -245,14 +247,14 @@ ReferenceGather::ScalarStretch ReferenceGather::scalarStretch(const Ray& ray, co
 
 /// Marches from slice to slice in two halves: the scalar is linear up to the middle, and from there on. Extinction falls with the share of
 /// voxels with data, which is linear in both halves.
-void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,
+void ReferenceGather::marchScalars(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab,
                                    const GatherLight* light) const {
   Scalar last;
   std::optional<Arriving> lastArriving;
   for (int number = 0; number <= slab.count; ++number) {
     const ScalarStretch stretch = scalarStretch(ray, slab, number, last);
     std::array<Stretch, 2> halves;
-    if (light != nullptr) halves = lightStretch(*light, ray, slab, stretch, transmittance, lastArriving);
+    if (light != nullptr) halves = lightStretch(*light, ray, slab, stretch, transmittance.alpha, lastArriving);
     for (std::size_t half = 0; half < 2; ++half) {
       const double inFront = std::clamp(slab.ahead(ray, stretch.slice) - (half == 0 ? 0.5 : 0.0), 0.0, 0.5);  // of the half, in slices
       const double length = inFront * slab.layer(ray) * stretch.coverages[half];
@@ -260,7 +262,7 @@ void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, cons
       if (light != nullptr)
         addLit(sums, transmittance, stretch.means[half], length, distance, halves[half], ray);
       else
-        addPart(sums, transmittance, stretch.means[half], length, distance);
+        addPart(sums, transmittance.alpha, stretch.means[half], length, distance);
     }
     last = stretch.end;
   }
@@ -270,7 +272,7 @@ GatherSums ReferenceGather::sumsAt(glm::dvec2 position, std::span<const GatherBl
   const Ray ray = rayThrough(position);
   const int axis = axisOf(position, ray);
   GatherSums sums;
-  double transmittance = 1.0;
+  Transmittance transmittance;
   for (int level = detail_.finest; level <= detail_.coarsest; ++level) {
     const Slab slab = slabOf(ray, axis, level);
     const GatherLight* lit = lighting_ ? &light[std::size_t(level)] : nullptr;
@@ -281,7 +283,7 @@ GatherSums ReferenceGather::sumsAt(glm::dvec2 position, std::span<const GatherBl
     else
       marchBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)]);
   }
-  sums.energy = 1.0 - transmittance;
+  sums.energy = 1.0 - transmittance.alpha;
   return sums;
 }
 

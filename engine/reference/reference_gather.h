@@ -36,8 +36,9 @@ std::vector<glm::dvec3> referenceGradients(std::span<const double> values, glm::
 class ReferenceGather {
  public:
   /// Keeps a reference to the volume.
-  ReferenceGather(const Volume& volume, const Classification& classification, const Camera& camera,
-                  const FrameSettings& settings);
+  /// `scattered` is the light that ScatteringSolver finds, if there is such light.
+  ReferenceGather(const Volume& volume, const Classification& classification, const Camera& camera, const FrameSettings& settings,
+                  std::optional<ScatteredField> scattered = {});
 
   const GatherLattice& lattice() const { return lattice_; }
   /// Whether coarse samples are near enough to each other for adaptive sampling (reference_refinement.h).
@@ -69,14 +70,15 @@ class ReferenceGather {
   struct Scalar;
   struct ScalarStretch;
   struct Arriving;
+  struct Transmittance;
   struct Stretch;
   Ray rayThrough(glm::dvec2 position) const;
   int axisOf(glm::dvec2 position, const Ray& ray) const;
   Slab slabOf(const Ray& ray, int axis, int level) const;
   int firstVoxel(const Ray& ray, int axis, int level) const;
-  void marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks) const;
+  void marchBlocks(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks) const;
   /// With `light`, what reaches the samples; null without lighting.
-  void marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherLight* light) const;
+  void marchScalars(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab, const GatherLight* light) const;
   /// The voxel's scalar in intervals of the transfer function's table; none without data.
   std::optional<double> scalarOf(glm::ivec3 voxel) const;
   Scalar scalarAt(const Ray& ray, const Slab& slab, int slice) const;
@@ -84,15 +86,15 @@ class ReferenceGather {
   glm::dvec4 blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
   glm::dvec3 emissionAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
   // With lighting, in reference_gather_light.cpp:
-  void marchLitBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks,
+  void marchLitBlocks(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks,
                       const GatherLight& light) const;
   void lightSurfaces(std::array<Stretch, 2>& halves, const GatherLight& light, const Ray& ray, const Slab& slab, int slice, double first,
                      double second) const;
   std::array<Stretch, 2> lightStretch(const GatherLight& light, const Ray& ray, const Slab& slab, const ScalarStretch& scalars,
                                       double transmittance, std::optional<Arriving>& lastArriving) const;
-  void addLit(GatherSums& sums, double& transmittance, glm::dvec4 medium, double length, double distance, const Stretch& stretch,
+  void addLit(GatherSums& sums, Transmittance& before, glm::dvec4 medium, double length, double distance, const Stretch& stretch,
               const Ray& ray) const;
-  glm::dvec3 leaving(const Stretch& stretch, double depth, glm::dvec3 toEye) const;
+  glm::dvec3 leaving(const Stretch& stretch, glm::dvec3 depth, glm::dvec3 toEye) const;
   Arriving storedAt(const GatherLight& light, const Slab& slab, glm::dvec2 position, int slice) const;
   Arriving arrivingAt(const GatherLight& light, const Ray& ray, const Slab& slab, int slice) const;
   void setBeyond(Arriving& beyond, const Arriving& within, const Slab& slab, int slice) const;
@@ -114,6 +116,9 @@ class ReferenceGather {
   const Volume& volume_;
   std::optional<Lighting> lighting_;
   std::vector<RaySource> lights_;  ///< the lights' places in index space
+  std::optional<ScatteredField> scattered_;
+  double forward_ = 0.0;       ///< of lighting_: PhaseSplit
+  glm::dvec3 narrowing_{1.0};  ///< mean factor of the extinction that this makes towards lights
   glm::ivec2 size_;
   glm::dvec2 middle_;  ///< of the image, pixels
   PixelRays rays_;

@@ -93,11 +93,8 @@ ReferenceGather::Arriving ReferenceGather::storedAt(const GatherLight& light, co
   forCorners(position, slab.axis, slice, dimensions, [&](std::size_t, double weight, glm::ivec3 block) {
     const std::size_t i = indexOf(block, dimensions);
     for (std::size_t l = 0; l < light.depths.size(); ++l) roots.depths[l] += weight * std::sqrt(light.depths[l][i]);
-    for (std::size_t c = 0; c < 3 && !light.ambient.empty(); ++c)
-      roots.ambient[int(c)] += weight * std::sqrt(light.ambient[std::min(c, light.ambient.size() - 1)][i]);
   });
   for (double& root : roots.depths) root *= root;
-  roots.ambient *= roots.ambient;
   return roots;
 }
 
@@ -113,7 +110,6 @@ ReferenceGather::Arriving ReferenceGather::arrivingAt(const GatherLight& light, 
     if (within >= 1.0 || within <= 0.0) continue;
     for (std::size_t l = 0; l < lights_.size(); ++l)
       if (!isLitBorder(l, sidesOf(slab.axis)[std::size_t(side)], first)) arriving.depths[l] /= within * within;
-    arriving.ambient /= within * within;
   }
   return arriving;
 }
@@ -186,21 +182,19 @@ void ReferenceGather::lightFromOutside(std::span<Stretch> stretches, const Gathe
   const int at = std::clamp(int(std::floor(slice + offset[slab.axis] + 0.5)), 0, dimensionsOf(slab)[slab.axis] - 1);
   const Arriving outside = storedAt(light, slab, slab.position(ray, slice) + onSides(offset, slab.axis), at);
   for (Stretch& stretch : stretches) {
-    const glm::dvec3 change = (1.0 - stretch.surface) * (stretch.end.ambient - stretch.begin.ambient);
-    stretch.begin.ambient = glm::mix(stretch.begin.ambient, outside.ambient, stretch.surface);
-    stretch.end.ambient = stretch.begin.ambient + change;
     stretch.outside = outside.depths;
+    stretch.scatteredOffset = stretch.surface * slab.edge * offset;
   }
 }
 
-/// The radiance that a stretch sends to the eye for a source term of 1 per unit of its length.
-glm::dvec3 ReferenceGather::leaving(const Stretch& stretch, double depth, glm::dvec3 toEye) const {
-  double octaves = 0.0;
-  for (int octave = 0; octave < lighting_->scattering; ++octave) octaves += lighting_->octaveScale(octave);
-  glm::dvec3 sum;
-  for (int c = 0; c < 3; ++c)
-    sum[c] = octaves * lighting_->ambient[c] * std::exp(-stretch.begin.ambient[c]) *
-             meanTransmittance(depth + stretch.end.ambient[c] - stretch.begin.ambient[c]);
+/// The radiance that a stretch sends to the eye for a source term of 1 per unit of its length. `depth` is its depth for light, by colour.
+glm::dvec3 ReferenceGather::leaving(const Stretch& stretch, glm::dvec3 depth, glm::dvec3 toEye) const {
+  glm::dvec3 sum(0.0);
+  if (scattered_) {
+    sum = scattered_->at(stretch.position + stretch.scatteredOffset, toEye);
+    for (int c = 0; c < 3; ++c) sum[c] *= meanTransmittance(depth[c]);
+  }
+  const glm::dvec3 tints = lighting_->tint * narrowing_;
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     const Light& light = lighting_->lights[l];
     const glm::dvec3 apart = light.atInfinity ? light.place : linear_ * (lights_[l].place - stretch.position);
@@ -208,19 +202,14 @@ glm::dvec3 ReferenceGather::leaving(const Stretch& stretch, double depth, glm::d
     const double distance2 = light.atInfinity ? 1.0 : std::max(glm::dot(apart, apart), nearest2);
     const glm::dvec3 toLight = apart / std::max(glm::length(apart), 1e-15);
     const double begin = stretch.begin.depths[l], change = stretch.end.depths[l] - begin;
-    if (lighting_->isTinted() && begin + std::max(change, 0.0) >= kUnknownDepth) continue;
+    if ((lighting_->isTinted() || forward_ > 0.0) && begin + std::max(change, 0.0) >= kUnknownDepth) continue;
     const bool facing = glm::dot(stretch.normal, toLight) > 0.0;
     for (int c = 0; c < 3; ++c) {
-      double reaching = 0.0;
-      for (int octave = 0; octave < lighting_->scattering; ++octave) {
-        const double scale = lighting_->octaveScale(octave), tint = scale * lighting_->tint[c];
-        reaching += scale * (1.0 - stretch.surface) * phaseFunction(scale * lighting_->phaseG, -glm::dot(toLight, toEye)) *
-                    std::exp(-tint * begin) * meanTransmittance(depth + tint * change);
-      }
+      double reaching = (1.0 - stretch.surface) * phaseFunction(lighting_->phaseG, -glm::dot(toLight, toEye)) *
+                        std::exp(-tints[c] * begin) * meanTransmittance(depth[c] + tints[c] * change);
       if (stretch.surface > 0.0) {
-        const double tint = lighting_->tint[c];
-        const double through = facing ? 0.5 * std::exp(-tint * stretch.outside[l]) * meanTransmittance(depth)
-                                      : std::exp(-tint * begin) * meanTransmittance(depth + tint * change);
+        const double through = facing ? 0.5 * std::exp(-tints[c] * stretch.outside[l]) * meanTransmittance(depth[c])
+                                      : std::exp(-tints[c] * begin) * meanTransmittance(depth[c] + tints[c] * change);
         reaching += stretch.surface * surfaceScattering(stretch.normal, toLight, toEye) * through;
       }
       sum[c] += light.intensity * light.color[c] / distance2 * reaching;
@@ -229,20 +218,20 @@ glm::dvec3 ReferenceGather::leaving(const Stretch& stretch, double depth, glm::d
   return sum;
 }
 
-void ReferenceGather::addLit(GatherSums& sums, double& transmittance, glm::dvec4 medium, double length, double distance,
+void ReferenceGather::addLit(GatherSums& sums, Transmittance& before, glm::dvec4 medium, double length, double distance,
                              const Stretch& stretch, const Ray& ray) const {
   const double depth = medium.a * length;
+  const glm::dvec3 ofLight = depth - forward_ * length * glm::dvec3(medium);
   const glm::dvec3 toEye = -glm::normalize(linear_ * ray.direction);
-  if (length > 0.0) {
-    sums.color += transmittance * length * (leaving(stretch, depth, toEye) * glm::dvec3(medium) + stretch.emission);
-  }
-  sums.distance += transmittance * -std::expm1(-depth) * std::max(distance, 0.0);
-  transmittance *= std::exp(-depth);
+  if (length > 0.0) sums.color += before.light * length * (leaving(stretch, ofLight, toEye) * glm::dvec3(medium) + stretch.emission);
+  sums.distance += before.alpha * -std::expm1(-depth) * std::max(distance, 0.0);
+  before.alpha *= std::exp(-depth);
+  before.light *= glm::exp(-ofLight);
 }
 
 /// From slice to slice: source term and extinction are the means of both, depths change linearly. The halves emit what their slices do.
-void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab, const GatherBlocks& blocks,
-                                     const GatherLight& light) const {
+void ReferenceGather::marchLitBlocks(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab,
+                                     const GatherBlocks& blocks, const GatherLight& light) const {
   const int end = dimensionsOf(slab)[slab.axis];
   glm::dvec4 lastMedium(0.0);
   glm::dvec3 lastEmission(0.0);
@@ -261,7 +250,7 @@ void ReferenceGather::marchLitBlocks(GatherSums& sums, double& transmittance, co
     if (before < 0 || before >= end) setBeyond(stretch.begin, found, slab, before);
     if (slice < 0 || slice >= end) setBeyond(stretch.end, last, slab, slice);
     stretch.position = ray.origin + slab.distance(ray, slice - 0.5 * slab.sign) * ray.direction;
-    if (lighting_->surface > 0.0 && transmittance * slab.layer(ray) * mean.a > kMinShown) {
+    if (lighting_->surface > 0.0 && transmittance.alpha * slab.layer(ray) * mean.a > kMinShown) {
       const glm::dvec3 gradient = 0.5 * (gradientAt(light, ray, slab, before) + gradientAt(light, ray, slab, slice));
       const double reach = glm::length(gradient);
       setSurface(stretch, gradient, -std::min(2.0 * reach / std::max(mean.a + reach, 1e-20), 1.0));
@@ -307,16 +296,11 @@ std::array<ReferenceGather::Stretch, 2> ReferenceGather::lightStretch(const Gath
   const Scalar &last = scalars.begin, &found = scalars.end;
   const auto place = [&](double at) { return ray.origin + slab.distance(ray, at) * ray.direction; };
   const Arriving atLast = arrivingAt(light, ray, slab, before), atFound = arrivingAt(light, ray, slab, std::clamp(slice, 0, end - 1));
-  const glm::dvec3 ambientBegin = last.coverage > 0.0 ? atLast.ambient : atFound.ambient;
-  const glm::dvec3 ambientEnd = found.coverage > 0.0 ? atFound.ambient : ambientBegin;
   const double sum = scalars.means[0].a + scalars.means[1].a, share = sum > 0.0 ? scalars.means[0].a / sum : 0.5;
   const double shown = transmittance * slab.layer(ray) *
                        (scalars.coverages[0] * scalars.means[0].a + scalars.coverages[1] * scalars.means[1].a);
 
   std::array<Stretch, 2> halves;
-  halves[0].begin.ambient = ambientBegin;
-  halves[0].end.ambient = halves[1].begin.ambient = glm::mix(ambientBegin, ambientEnd, share);
-  halves[1].end.ambient = ambientEnd;
   for (Stretch& half : halves) half.position = place(slice - 0.5 * slab.sign);
   if (lighting_->surface > 0.0 && shown > 2.0 * kMinShown) lightSurfaces(halves, light, ray, slab, slice, scalars.first().value, scalars.second().value);
   if (sum <= 0.0 || last.coverage + scalars.middle.coverage + found.coverage == 0.0) {

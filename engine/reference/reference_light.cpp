@@ -20,11 +20,7 @@ double meanOver(double x) {
 }  // namespace
 
 ReferenceLight::ReferenceLight(const LightInputs& inputs, const FrameSettings& settings)
-    : inputs_(inputs),
-      lighting_(*settings.lighting),
-      toWorld_(inputs.volume.indexToWorld),
-      fromAll_(directionLight(lighting_, inputs.tableSettings.directions, inputs.volume.indexToWorld)),
-      shares_(directionShares(inputs.tableSettings.directions, inputs.volume.indexToWorld)) {
+    : inputs_(inputs), lighting_(*settings.lighting), toWorld_(inputs.volume.indexToWorld) {
   const AttenuationLookup lookup = settings.tableLookup();
   for (const Light& light : lighting_.lights) {
     const RaySource source = lightSource(light, inputs_.volume.indexToWorld);
@@ -48,8 +44,8 @@ glm::dvec3 ReferenceLight::toLight(const RaySource& source, glm::dvec3 position)
   return glm::length(way) < kAtLight ? glm::dvec3(0.0, 0.0, 1.0) : way;
 }
 
-glm::dvec3 ReferenceLight::lightReaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
-                                    double unsaturated, double counted, double scale) const {
+glm::dvec3 ReferenceLight::lightReaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth, double unsaturated,
+                                         double counted) const {
   const double sigma = extinctionOf(block, inputs_.volume, inputs_.extinction, inputs_.coarser);
   const auto layersOf = [&](glm::dvec3 way) {
     return boxOf(block, inputs_.volume.dimensions).extent[majorAxis(way)];
@@ -61,45 +57,18 @@ glm::dvec3 ReferenceLight::lightReaching(const Block& block, glm::dvec3 toEye, g
   const double e = own(toEye);
   const double cosine = glm::dot(glm::normalize(toWorld_ * toEye), glm::normalize(toWorld_ * direction));
   const bool isUnknown = unsaturated == 0.0 || depth >= 0.9999 * kOpaqueDepth;
-  if (lighting_.isTinted() && isUnknown) return glm::dvec3(0.0);
+  if ((lighting_.isTinted() || inputs_.narrowing != glm::dvec3(1.0)) && isUnknown) return glm::dvec3(0.0);
   glm::dvec3 part;
   for (int c = 0; c < 3; ++c) {
     // The integral of exp(-e t) times exp(-l t), or where the light comes from the other side exp(-l (1 -
     // t)), over t from 0 to 1.
-    const double tint = scale * lighting_.tint[c], l = tint * own(direction);
+    const double tint = lighting_.tint[c] * inputs_.narrowing[c], l = tint * own(direction);
     const double sameSide = meanOver(e + l);
     const double otherSide = std::exp(-std::min(e, l)) * meanOver(std::abs(e - l));
     part[c] = std::exp(-tint * inFront) *
               (0.5 * (1.0 + cosine) * sameSide + 0.5 * (1.0 - cosine) * otherSide) / meanOver(e);
   }
   return part;
-}
-
-glm::dvec3 ReferenceLight::reachingFromAll(const Block& block, glm::dvec3 toEye) const {
-  const TableSettings& settings = inputs_.tableSettings;
-  const LevelData* level = block.level == 0 ? nullptr : &inputs_.coarser[std::size_t(block.level) - 1];
-  const auto& table = level == nullptr ? inputs_.table : level->table;
-  const std::size_t index =
-      level == nullptr ? inputs_.volume.at(block.cell.x, block.cell.y, block.cell.z) : level->at(block.cell);
-  const int end = settings.code == AttenuationCode::Linear8 ? 0 : 255;
-  const glm::dvec3 after = glm::normalize(toWorld_ * toEye);
-  glm::dvec3 sum(0.0);
-  double weights = 0.0, parts = 0.0;
-  for (int d = 0; d < int(table.size()); ++d) {
-    const int byte = table[std::size_t(d)][index];
-    const glm::dvec3 direction = directionAt(settings.directions, d);
-    for (int octave = 0; octave < lighting_.scattering; ++octave) {
-      const double scale = lighting_.octaveScale(octave);
-      const double phase = 4.0 * std::numbers::pi *
-                           phaseFunction(scale * lighting_.phaseG, -glm::dot(glm::normalize(toWorld_ * direction), after));
-      weights += shares_[std::size_t(d)] * scale * phase;
-      parts += shares_[std::size_t(d)] * scale;
-      sum += scale * phase * fromAll_[std::size_t(d)] *
-             lightReaching(block, toEye, direction, decodeOpticalDepth(settings.code, byte), byte == end ? 0.0 : 1.0,
-                      stepLength(inputs_.volume.indexToWorld, direction, settings.pathLengthCorrection), scale);
-    }
-  }
-  return parts / weights * sum;
 }
 
 glm::dvec3 ReferenceLight::extinctionGradient(const Block& block) const {
@@ -155,15 +124,12 @@ glm::dvec3 ReferenceLight::scattered(const Block& block, glm::dvec3 toEye) const
     const glm::dvec3 apart = toWorld_ * (sources_[i].place - centre);
     const double distance2 = std::max(glm::dot(apart, apart), kNearestLight2 * edge * edge);
     const double irradiance = light.intensity / (light.atInfinity ? 1.0 : distance2);
-    for (int octave = 0; octave < lighting_.scattering; ++octave) {
-      const double scale = lighting_.octaveScale(octave);
-      double phase = (1.0 - surface) * phaseFunction(scale * lighting_.phaseG, glm::dot(before, after));
-      if (octave == 0 && surface > 0.0) phase += surface * surfaceScattering(normal, -before, after);
-      sum += light.color * (scale * irradiance * phase) *
-             lightReaching(block, toEye, way, depth.at(block), depth.unsaturated(block), counted, scale);
-    }
+    double phase = (1.0 - surface) * phaseFunction(lighting_.phaseG, glm::dot(before, after));
+    if (surface > 0.0) phase += surface * surfaceScattering(normal, -before, after);
+    sum += light.color * (irradiance * phase) * lightReaching(block, toEye, way, depth.at(block), depth.unsaturated(block), counted);
   }
-  return sum + reachingFromAll(block, toEye);
+  if (inputs_.scattered != nullptr) sum += inputs_.scattered->at(centre, after);
+  return sum;
 }
 
 }  // namespace freevoxels

@@ -9,6 +9,7 @@
 
 #include "engine/reference/reference_depth.h"
 #include "engine/scene/lighting.h"
+#include "engine/scene/scattered_field.h"
 #include "engine/volume/transfer_table.h"
 
 namespace freevoxels {
@@ -27,6 +28,8 @@ struct LightInputs {
   std::span<const glm::dvec3> emission = {};
   /// The codes of scalars whose gradients are the normals of surfaces; null: those of extinctions are.
   const TransferTable* scalars = nullptr;
+  const ScatteredField* scattered = nullptr;  ///< null without such light
+  glm::dvec3 narrowing{1.0};                  ///< mean factor of the extinction of light, as what is scattered forwards goes on
 };
 
 class ReferenceLight {
@@ -41,9 +44,8 @@ class ReferenceLight {
   glm::dvec3 toLight(const RaySource& source, glm::dvec3 position) const;
   /// A block's transmittance towards a light, averaged over the parts of it that the eye sees. `depth` is
   /// that in front of the middle layer; `counted` is the length of a layer in that depth.
-  glm::dvec3 lightReaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth,
-                      double unsaturated, double counted, double scale) const;
-  glm::dvec3 reachingFromAll(const Block& block, glm::dvec3 toEye) const;
+  glm::dvec3 lightReaching(const Block& block, glm::dvec3 toEye, glm::dvec3 direction, double depth, double unsaturated,
+                           double counted) const;
 
   /// The gradient by central differences in index space, per block of its size.
   glm::dvec3 extinctionGradient(const Block& block) const;
@@ -55,8 +57,6 @@ class ReferenceLight {
   const glm::dmat3 toWorld_;
   std::vector<RaySource> sources_;
   std::vector<std::unique_ptr<ReferenceDepth>> depths_;  ///< towards each light
-  const std::vector<glm::dvec3> fromAll_;                ///< directionLight
-  const std::vector<double> shares_;                     ///< directionShares
 };
 
 }  // namespace freevoxels

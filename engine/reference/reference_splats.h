@@ -11,6 +11,7 @@
 #include "engine/octree/level_data.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
+#include "engine/scene/scattered_field.h"
 #include "engine/scene/table_settings.h"
 #include "engine/splatting/splat_sums.h"
 #include "engine/volume/classification.h"
@@ -25,6 +26,7 @@ struct SplatInputs {
   TableSettings tableSettings;
   std::span<const LevelData> coarser = {};    ///< levels above the voxels, up to the coarsest that is drawn
   std::span<const glm::dvec3> emission = {};  ///< for every voxel; empty if none emits light
+  const ScatteredField* scattered = nullptr;  ///< null without such light
 };
 
 /// Sums over the listed voxels (indices, Volume::at), in that order.

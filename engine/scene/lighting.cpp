@@ -18,6 +18,12 @@ double phaseFunction(double g, double cosine) {
   return (1.0 - g * g) / (4.0 * std::numbers::pi * width * std::sqrt(width));
 }
 
+PhaseSplit splitPhase(const Lighting& lighting) {
+  const double g = lighting.phaseG;
+  if (g <= 0.0 || lighting.scattering == 1) return {.forward = 0.0, .g = g};
+  return {.forward = g * g, .g = g / (1.0 + g)};
+}
+
 double surfaceScattering(glm::dvec3 normal, glm::dvec3 toLight, glm::dvec3 toEye) {
   const double diffuse = std::abs(glm::dot(normal, toLight)) / (2.0 * std::numbers::pi);
   const glm::dvec3 between = toLight + toEye;
@@ -58,18 +64,6 @@ std::vector<double> directionShares(DirectionSet set, const glm::dmat4& indexToW
       }
   for (double& share : shares) share /= whole;
   return shares;
-}
-
-std::vector<glm::dvec3> directionLight(const Lighting& lighting, DirectionSet set,
-                                       const glm::dmat4& indexToWorld) {
-  const std::vector<double> shares = directionShares(set, indexToWorld);
-  std::vector<glm::dvec3> light(shares.size(), lighting.ambient);
-  if (lighting.environment) {
-    const std::vector<glm::dvec3> around = directionRadiances(*lighting.environment, set, indexToWorld);
-    for (std::size_t d = 0; d < light.size(); ++d) light[d] += around[d];
-  }
-  for (std::size_t d = 0; d < light.size(); ++d) light[d] *= shares[d];
-  return light;
 }
 
 }  // namespace freevoxels

@@ -1,11 +1,10 @@
 #pragma once
 // Lights, and how a volume scatters their light: Subr et al. 2007, Section 4.3.
 //
-// A voxel of albedo a scatters the radiance a (sum over lights of E A phase + ambient) towards the eye. E is
-// a light's irradiance at the voxel, A the transmittance between the two, and ambient the integral over all
-// directions of radiance (that of the environment included) times A times phase.
+// A voxel of albedo a scatters the radiance a (sum over lights of E A phase + J) towards the eye. E is a light's irradiance at the voxel,
+// A the transmittance between the two, and J the integral over all directions of phase times the radiance of light that was scattered
+// before, comes from the surroundings or is emitted by the volume.
 
-#include <cmath>
 #include <glm/glm.hpp>
 #include <memory>
 #include <numbers>
@@ -28,7 +27,8 @@ inline constexpr double kHighlight = 0.2, kHighlightExponent = 40.0;
 /// unknown, which a smaller tint would make visible.
 inline constexpr double kMinTint = 0.2, kMaxTint = 5.0;
 
-inline constexpr int kMaxOctaves = 8;
+/// All orders of scattering, and the largest number of them that can be asked for.
+inline constexpr int kAllOrders = 0, kMaxOrders = 100;
 
 /// Largest |g|: the narrowest phase function that 32-bit floats can represent.
 inline constexpr double kMaxPhaseG = 0.99;
@@ -66,18 +66,16 @@ struct Lighting {
   /// The fraction in 0..1 of light that a voxel reflects like a surface (surfaceScattering) where the
   /// extinction changes most. The rest is scattered as by fog.
   double surface = 0.0;
-  LightAttenuation attenuation = LightAttenuation::Auto;  ///< for the lights; ambient light uses the table
-  /// Multiple scattering is approximated by octaves (Wrenninge, Kulla and Lundqvist 2013): octave i is lit as by single
-  /// scattering, but with the optical depth towards the light, the phase function's g and the light itself all multiplied
-  /// by scatteringScale^i. 1 octave is single scattering. Surfaces scatter in the first one only.
-  int scattering = 1;           ///< octaves, 1..kMaxOctaves
-  double scatteringScale = 0.5;  ///< in 0..1
-
-  double octaveScale(int octave) const { return std::pow(scatteringScale, octave); }
+  LightAttenuation attenuation = LightAttenuation::Auto;
+  /// The orders of scattering that are followed (engine/lighting/scattering_solver.h): 1 is single scattering, kAllOrders as many as
+  /// matter.
+  int scattering = 1;
 
   bool hasAmbient() const { return ambient != glm::dvec3(0.0) || environment; }
   /// Whether a frame needs the attenuation table. For Auto this only holds after it has been resolved.
-  bool readsTable() const { return attenuation == LightAttenuation::Table || hasAmbient(); }
+  bool readsTable() const { return attenuation == LightAttenuation::Table && !lights.empty(); }
+  /// Whether light that was scattered before, or comes from the surroundings, reaches the medium; without its emission.
+  bool scattersAgain() const { return hasAmbient() || (scattering != 1 && !lights.empty()); }
   bool isTinted() const { return tint != glm::dvec3(1.0); }
   bool operator==(const Lighting&) const = default;
 };
@@ -85,6 +83,13 @@ struct Lighting {
 /// The phase function of Henyey and Greenstein (1941), per steradian: it integrates to 1 over the sphere.
 /// `cosine` is that of the angle between the directions of the light before and after scattering.
 double phaseFunction(double g, double cosine);
+
+/// For light that is scattered more than once, a phase function with a forward peak is split (delta-Eddington, Joseph, Wiscombe and Weinman
+/// 1976): the fraction `forward` of what is scattered is treated as not scattered, and the rest has the asymmetry `g`.
+struct PhaseSplit {
+  double forward = 0.0, g = 0.0;
+};
+PhaseSplit splitPhase(const Lighting& lighting);
 
 /// Replaces the phase function at a surface (after Blinn 1977): a diffuse part and a highlight of the same
 /// colour, equal on both sides. It integrates to about 1 over the directions of the light. All vectors have
@@ -101,10 +106,5 @@ RaySource lightSource(const Light& light, const glm::dmat4& indexToWorld);
 /// For each direction of a table, in the order of directions.h, the fraction of the sphere in world space
 /// that it represents under bilinear look-up. The fractions add up to 1.
 std::vector<double> directionShares(DirectionSet set, const glm::dmat4& indexToWorld);
-
-/// Ambient light and environment by the directions of a table: radiance times the direction's fraction of the
-/// sphere. They add up to the mean radiance over the sphere.
-std::vector<glm::dvec3> directionLight(const Lighting& lighting, DirectionSet set,
-                                       const glm::dmat4& indexToWorld);
 
 }  // namespace freevoxels

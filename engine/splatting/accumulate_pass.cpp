@@ -45,16 +45,12 @@ double nearest2(const Light& light, const DeviceVolume& volume) {
   return std::max(0.25 * glm::dot(apart, apart), double(shader::kNearestLight2) * volume.voxelSize * volume.voxelSize);
 }
 
-double brightestRadiance(const DeviceVolume& volume, const Lighting& lighting) {
+double brightestRadiance(const DeviceVolume& volume, const Lighting& lighting, double scattered) {
   double lights = 0.0;
   for (const Light& light : lighting.lights)
     lights += largestComponent(light.color) * light.intensity / (light.atInfinity ? 1.0 : nearest2(light, volume));
-  double around = largestComponent(lighting.ambient);
-  if (lighting.environment)
-    for (const glm::vec3 radiance : lighting.environment->radiance)
-      around = std::max(around, largestComponent(lighting.ambient) + lighting.environment->intensity * largestComponent(radiance));
-  // Each octave is at most as bright as the first; a block's visible side at most twice as bright as its mean.
-  return 2.0 * lighting.scattering * (lights * mostScattered(lighting) + around);
+  // A block's visible side is at most twice as bright as its mean.
+  return 2.0 * (lights * mostScattered(lighting) + scattered);
 }
 
 glm::ivec2 imageTiles(glm::ivec2 size) {
@@ -72,7 +68,9 @@ SumBounds sumBounds(const DeviceVolume& volume, const FrameConstants& frame, con
   SumBounds bounds{.layers = double(std::max({size.x, size.y, size.z}) + 2),
                    .emission = volume.hasEmission() ? frame.brightestRay : 0.0,
                    .farthest = std::max(frame.farthest, 0.0)};
-  if (lighting != nullptr) bounds.radiance = brightestRadiance(volume, *lighting);
+  if (lighting != nullptr) bounds.radiance = brightestRadiance(volume, *lighting, frame.scatteredRadiance);
+  if (lighting != nullptr && splitPhase(*lighting).forward > 0.0)
+    bounds.radiance /= 1.0 - splitPhase(*lighting).forward;  // seen from deeper
   bounds.radiance *= std::max(largestComponent(volume.albedo), 1.0);
   return bounds;
 }

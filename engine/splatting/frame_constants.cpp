@@ -163,7 +163,8 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.eye = eyeSource(camera, volume.indexToWorld);
   frame.eyeInside = isInside(frame.eye, volume.layout.dimensions);
   frame.lit = settings.lighting.has_value();
-  frame.tinted = frame.lit && settings.lighting->isTinted();
+  frame.setup.lighting.narrowing = glm::vec3(1.0f);
+  frame.tinted = frame.lit && (settings.lighting->isTinted() || splitPhase(*settings.lighting).forward > 0.0);
   frame.lightsReadTable = frame.lit && settings.lighting->readsTable();
 
   const double largestPoint = double(device.limits().pointSizeRange[1]);
@@ -185,6 +186,16 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
                  .worldLength2Squares = world.squares,
                  .viewportSize = glm::vec2(settings.size) + 2.0f * frame.viewportMargin};
   return frame;
+}
+
+void setScattered(FrameConstants& constants, const Lighting& lighting, const ScatteringSolver& solved) {
+  shader::FrameLighting& onDevice = constants.setup.lighting;
+  const PhaseSplit split = splitPhase(lighting);
+  onDevice.scattered = solved.onDevice();
+  onDevice.forward = float(split.forward);
+  onDevice.narrowing = glm::vec3(1.0 - split.forward * solved.medium().meanAlbedo());
+  onDevice.tint *= onDevice.narrowing;
+  constants.scatteredRadiance = solved.brightest();
 }
 
 }  // namespace freevoxels

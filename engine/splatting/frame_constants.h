@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 
+#include "engine/lighting/scattering_solver.h"
 #include "engine/octree/device_volume.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/render_settings.h"
@@ -22,7 +23,7 @@ struct FrameConstants {
   RaySource eye;
   bool eyeInside = false;  ///< whether the eye is inside the volume's box
   bool lit = false;        ///< whether there is lighting; the caller fills in setup.lighting
-  bool tinted = false;     ///< only with lighting
+  bool tinted = false;     ///< whether the extinction of light differs between colours, or from that of alpha; only with lighting
   bool lightsReadTable = false;
   double endTransmittance = 0.0;  ///< to the eye, at which a gathered ray ends, however bright the volume; 0: at its end
   DetailRule detail;
@@ -32,6 +33,8 @@ struct FrameConstants {
   /// The part of the image that splats can reach, at least one pixel.
   glm::ivec2 coveredFirst{0}, coveredExtent{1};
   double farthest = 0.0;        ///< bound of the distances from the eye plane at which anything is drawn, world units
+  double scatteredRadiance =
+      0.0;                      ///< no point scatters more of the light of setup.lighting.scattered, for albedo 1; the caller fills it in
   double brightestRay = 0.0;    ///< no pixel has more light that the volume sends out itself
   bool quads = false;           ///< whether a splat may be larger than the device's largest point
   float viewportMargin = 0.0f;  ///< margin of the viewport in pixels, so that points whose centres are outside of the image are not clipped
@@ -42,5 +45,8 @@ struct FrameConstants {
 
 FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volume, const TableSettings& table, const Camera& camera,
                                   const FrameSettings& settings);
+
+/// Sets what the constants say of solved scattered light, after setup.lighting was set otherwise.
+void setScattered(FrameConstants& constants, const Lighting& lighting, const ScatteringSolver& solved);
 
 }  // namespace freevoxels

@@ -11,6 +11,7 @@
 #include "engine/reference/reference_gather.h"
 #include "engine/reference/reference_hierarchy.h"
 #include "engine/reference/reference_refinement.h"
+#include "engine/reference/reference_scattering.h"
 #include "engine/renderer_stages.h"
 #include "engine/validation/gather_sample_checks.h"
 #include "engine/validation/homogeneous_box.h"
@@ -37,6 +38,8 @@ constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
 /// The tolerance of scalars, which may round to the next interval of the transfer function's table, or to more or less than the least change
 /// whose mean is an integral.
 constexpr double kScalarTolerance = 3e-3;
+/// Of the largest value: iterations on the device end at kScatteringTolerance.
+constexpr double kScatteredTolerance = 1e-2;
 /// Within this part of the tolerance and 16 rounding errors of 24 bits, of which a fourth difference has as many, the device may find a
 /// cell rough or smooth.
 constexpr double kRoughnessBand = 1e-3, kRoughnessRounding = 16.0 / double(1 << 23);
@@ -97,8 +100,7 @@ std::optional<Lighting> lightingOf(const Volume& volume, Light light) {
     lighting.lights.push_back({.place = placed({0.46, 0.57, 0.53}), .atInfinity = false, .intensity = 0.1});
     lighting.tint = {0.7, 1.0, 1.6};
     lighting.phaseG = 0.4;
-    lighting.ambient = glm::dvec3(0.0);  // which the phase function makes depend on the direction to the eye
-    lighting.scattering = 3;
+    lighting.scattering = kAllOrders;
   } else {
     lighting.surface = 0.8;
   }
@@ -164,7 +166,7 @@ void checkBlocks(const GatherStages& stages, const ValidationScene& scene, const
 }
 
 /// Checks what the frame's samples read of the light, of all levels that it reads. The depths of scalars come from a sweep that is checked
-/// elsewhere, and so does ambient light.
+/// elsewhere.
 void checkLight(const GatherStages& stages, const ValidationScene& scene, const ReferenceGather& reference, const Lighting& lighting,
                 const char* frame, std::vector<Check>& checks) {
   MaxError depth, gradient;
@@ -261,6 +263,23 @@ void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSet
   checkSums(adaptive.gathered, expected, extent, kRefinementTolerance, "gather refinement", frame, checks);
 }
 
+/// The light of all orders against the same equations solved on the CPU.
+Check checkScattered(const ScatteredField& device, const Volume& volume, const Classification& classification, const Lighting& lighting,
+                     const char* frame) {
+  const ScatteredField expected = referenceScattering(ScatteringMedium(volume, classification), lighting);
+  FV_CHECK_EQ(device.mean.size(), expected.mean.size());
+  FV_CHECK_EQ(device.fluxes.size(), expected.fluxes.size());
+  const double largest = expected.brightest();
+  MaxError worst;
+  for (std::size_t i = 0; i < expected.mean.size(); ++i) {
+    const auto where = [&] { return fmt::format("cell {}", i); };
+    worst.take(glm::length(device.mean[i] - expected.mean[i]) / largest, where);
+    for (std::size_t axis = 0; axis < 3 && !expected.fluxes.empty(); ++axis)
+      worst.take(glm::length(device.fluxes[i][axis] - expected.fluxes[i][axis]) / largest, where);
+  }
+  return worst.atMost(kScatteredTolerance, fmt::format("gather scattered: {}", frame), "of the largest");
+}
+
 void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Classification& classification, const Frame& frame,
                 glm::ivec2 size, ReportSection& section) {
   const FrameSettings settings{.size = size,
@@ -270,11 +289,13 @@ void checkFrame(GatherOutputs& device, const ValidationScene& scene, const Class
                                .lighting = lightingOf(scene.volume, frame.light)};
   const Camera camera = cameraOf(scene.volume, frame.view, double(size.x) / size.y);
   const GatherStages stages = device.frame(camera, settings);
-  const ReferenceGather reference(scene.volume, classification, camera, settings);
+  const ReferenceGather reference(scene.volume, classification, camera, settings, stages.scattered);
   section.checks.push_back(checkLattice(stages.lattice, reference.lattice(), frame.name));
   if (stages.lattice.samples != reference.lattice().samples) return;
   if (std::ranges::any_of(stages.blocks, &GatherBlocks::exists)) checkBlocks(stages, scene, frame, section.checks);
   if (settings.lighting) checkLight(stages, scene, reference, *settings.lighting, frame.name, section.checks);
+  if (stages.scattered)
+    section.checks.push_back(checkScattered(*stages.scattered, scene.volume, classification, *settings.lighting, frame.name));
   const double tolerance = reference.hasScalars() ? kScalarTolerance : kSampleTolerance;
   const std::vector<GatherSums> samples = comparedSamples(reference, stages, tolerance, size);
   checkSums(stages.gathered, samples, stages.lattice.samples, tolerance, "gather samples", frame.name, section.checks);

@@ -46,15 +46,11 @@ struct Emission {
 /// whose extinction and colour are then interpolated. Without a transfer function both are the same.
 enum class ClassificationOrder : int { Post = 0, Pre = 1 };
 
-class EmissionLight;
-
 struct Classification {
   std::optional<TransferFunction> transferFunction;  ///< when set, the two below are not used
   double densityScale = 1.0;                         ///< extinction per world unit at density 1
   glm::vec3 albedo{0.9f};  ///< linear Rec.709; the volume's albedo grid takes precedence where it is active
-  std::optional<Emission> emission = std::nullopt;  ///< from the volume's temperatures, if it has any
-  /// The light of the emission on the medium; null if it lights nothing.
-  std::shared_ptr<const EmissionLight> emissionLight = nullptr;
+  std::optional<Emission> emission = std::nullopt;        ///< from the volume's temperatures, if it has any
   ClassificationOrder order = ClassificationOrder::Post;  ///< ignored for volumes with emission, which are Pre
 
   /// Whether samples of the volume are classified after interpolation (Post applies).

@@ -5,7 +5,6 @@
 #include <limits>
 
 #include "engine/core/error.h"
-#include "engine/volume/emission_light.h"
 #include "engine/volume/packed_light.h"
 
 namespace freevoxels {
@@ -96,9 +95,6 @@ ClassifiedVoxel VoxelClassifier::at(glm::ivec3 voxel) const {
   }
   if (classification_.emission && volume_.temperature)
     result.emission = emittedLight(*classification_.emission, volume_.temperature->values.at(voxel));
-  if (classification_.emissionLight && result.extinction > 0.0)
-    result.emission += result.extinction * result.color *
-                       classification_.emissionLight->at(glm::dvec3(volume_.indexToWorld * glm::dvec4(voxel, 1.0)));
   return result;
 }
 

@@ -91,7 +91,7 @@ TEST_F(RenderCommand, WithoutLightOptionsThereIsAKeyLightAndAmbientLight) {
   };
   const std::string lit = shells("--orbit 0,0", "a.exr");
   EXPECT_EQ(exrAttribute(lit, "freevoxels:ambient"), "0.12,0.12,0.12");
-  EXPECT_EQ(exrAttribute(lit, "freevoxels:scattering"), "3");
+  EXPECT_EQ(exrAttribute(lit, "freevoxels:scattering"), "all");
   const Image image = readExr(folder / "a.exr");
   float upperLeft = 0.0f, lowerRight = 0.0f;  // of opaque pixels
   int pixels[2] = {0, 0};

@@ -42,7 +42,6 @@ SceneDescription everything(const TemporaryFolder& folder) {
                     .tint = glm::dvec3(0.2, 5.0, 1.0),
                     .phaseG = -0.5,
                     .scattering = 4,
-                    .scatteringScale = 0.25,
                     .attenuation = LightAttenuation::Exact,
                     .shading = Shading::Gradient,
                     .surface = 0.75,

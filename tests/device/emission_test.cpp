@@ -60,12 +60,14 @@ class EmissionTest : public SplatTest {
       SCOPED_TRACE(i);
       const auto& [camera, settings] = frames[i];
       const Image image = renderer.render(camera, settings);
+      const std::optional<ScatteredField> scattered = RendererStages(renderer).downloadScattered();
       const auto sums = referenceBlockSums(volume, classification,
                                            {.extinction = extinction,
                                             .table = table,
                                             .tableSettings = {},
                                             .coarser = levels,
-                                            .emission = emission},
+                                            .emission = emission,
+                                            .scattered = settings.lighting && scattered ? &*scattered : nullptr},
                                            camera, settings, RendererStages(renderer).downloadDrawnBlocks());
       const Image expected = referenceResolve(sums, settings);
       EXPECT_LE(largestPixelDifference(image, expected), 2e-3);

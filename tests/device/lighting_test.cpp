@@ -76,7 +76,6 @@ TEST_F(LightingTest, TintsMatchTheReference) {
   lighting.tint = {0.4, 1.0, 2.5};
   lighting.surface = 0.5;
   lighting.scattering = 3;
-  lighting.scatteringScale = 0.6;
   lighting.environment = std::make_shared<Environment>(makeSky(64));
   expectSameImage(v, camera, {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting});
   expectSameImage(v, camera, {.size = {50, 50}, .method = SplatSettings{}, .lighting = lighting}, {.code = AttenuationCode::Linear8});
@@ -218,8 +217,9 @@ TEST_F(LightingTest, SortedImagesMatchTheReference) {
   const auto extinction = referenceExtinction(v, classification);
   const auto table = referenceTable(v, extinction, {});
   const FrameSettings settings{.size = {50, 50}, .method = SplatSettings{.composite = Composite::Sorted}, .lighting = everything()};
+  const ScatteredField scattered = referenceScattering(ScatteringMedium(v, classification), *settings.lighting);
   const ReferenceLight light(
-      {.volume = v, .extinction = extinction, .table = table, .coarser = {}, .tableSettings = {}}, settings);
+      {.volume = v, .extinction = extinction, .table = table, .coarser = {}, .tableSettings = {}, .scattered = &scattered}, settings);
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   Renderer renderer(device(), v, classification, {});
   const Image image = renderer.render(camera, settings);
@@ -240,10 +240,15 @@ TEST_F(LightingTest, BlocksMatchTheReference) {
   const std::vector<LevelData> levels = RendererStages(renderer).downloadLevels();
   const std::vector<float> device = RendererStages(renderer).downloadExtinction();
   const std::vector<double> extinction(device.begin(), device.end());
-  const auto sums = referenceBlockSums(
-      v, classification,
-      {.extinction = extinction, .table = RendererStages(renderer).downloadTable(), .tableSettings = {}, .coarser = levels},
-      camera, settings, blocks);
+  const std::optional<ScatteredField> scattered = RendererStages(renderer).downloadScattered();
+  ASSERT_TRUE(scattered);
+  const auto sums = referenceBlockSums(v, classification,
+                                       {.extinction = extinction,
+                                        .table = RendererStages(renderer).downloadTable(),
+                                        .tableSettings = {},
+                                        .coarser = levels,
+                                        .scattered = &*scattered},
+                                       camera, settings, blocks);
   EXPECT_GE(psnr(image, referenceResolve(sums, settings)), 90.0);
 }
 

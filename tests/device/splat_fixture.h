@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/lighting/scattering_solver.h"
+#include "engine/reference/reference_scattering.h"
 #include "engine/reference/reference_splats.h"
 #include "engine/reference/reference_table.h"
 #include "engine/renderer.h"
@@ -18,9 +20,14 @@ class SplatTest : public DeviceTest {
                          const TableSettings& table, const Camera& camera, const FrameSettings& settings) {
     const auto extinction = referenceExtinction(volume, classification);
     const auto bytes = referenceTable(volume, extinction, table);
-    const auto sums = referenceSplatSums(volume, classification,
-                                         {.extinction = extinction, .table = bytes, .tableSettings = table},
-                                         camera, settings, referenceVisibleVoxels(extinction));
+    std::optional<ScatteredField> scattered;
+    const ScatteringMedium medium(volume, classification);
+    if (settings.lighting && hasScatteredLight(*settings.lighting, medium.emits()))
+      scattered = referenceScattering(medium, *settings.lighting);
+    const auto sums = referenceSplatSums(
+        volume, classification,
+        {.extinction = extinction, .table = bytes, .tableSettings = table, .scattered = scattered ? &*scattered : nullptr}, camera,
+        settings, referenceVisibleVoxels(extinction));
     return referenceResolve(sums, settings);
   }
 

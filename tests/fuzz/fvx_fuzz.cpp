@@ -9,9 +9,9 @@
 
 #include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
-#include "engine/volume/cell_extinctions.h"
 #include "engine/volume/coarse_cells.h"
 #include "engine/volume/histogram.h"
+#include "engine/volume/scattering_medium.h"
 #include "shaders/gather_interface.h"
 #include "tests/fuzz/fuzz_file.h"
 
@@ -126,10 +126,8 @@ void prepareToDraw(const Volume& volume) {
   constexpr int kBins = 256;
   const Classification& classification = *volume.classification;
   histogramOf(volume, kBins);
-  for (const int edge : {1, 2, 1 << shader::kSkipLevels}) {
-    cellExtinctions(volume, classification, edge);
-    metCells(volume, classification, edge);
-  }
+  ScatteringMedium(volume, classification).coarser();
+  for (const int edge : {1, 2, 1 << shader::kSkipLevels}) metCells(volume, classification, edge);
 }
 
 }  // namespace

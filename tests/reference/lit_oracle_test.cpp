@@ -106,24 +106,6 @@ TEST(LitOracle, APhaseFunctionDoesNotChangeAmbientLightOfAThinBox) {
   EXPECT_NEAR(middle({.ambient = glm::dvec3(3.0), .phaseG = kPhaseG}, thin) / (3.0 * kAlbedo * thin), 1.0, 1e-2);
 }
 
-/// An environment that is black but for a sun.
-TEST(LitOracle, ASmallPartOfAnEnvironmentIsALight) {
-  Environment sun = makeSky(256);
-  glm::dvec3 irradiance(0.0), towards(0.0);
-  for (glm::vec3& pixel : sun.radiance) pixel = pixel.r > 100.0f ? pixel : glm::vec3(0.0f);
-  for (int row = 0; row < environmentRows(sun); ++row)
-    for (const EnvironmentPart& part : environmentRow(sun, row)) {
-      irradiance += part.solidAngle * part.radiance;
-      towards += part.solidAngle * part.radiance.r * part.direction;
-    }
-  for (const double phaseG : {0.0, kPhaseG}) {
-    const Lighting light{.lights = {{.place = towards, .color = irradiance, .intensity = 1.0}}, .phaseG = phaseG};
-    EXPECT_NEAR(middle({.environment = std::make_shared<Environment>(sun), .phaseG = phaseG}, kDepth) / middle(light, kDepth), 1.0,
-                1e-2)
-        << phaseG;
-  }
-}
-
 TEST(LitOracle, APointFarAwayIsADirection) {
   const glm::dvec3 direction(0.3, 0.8, 0.5);
   const Light far{
@@ -174,9 +156,8 @@ TEST(LitOracle, MatchesTinySteps) {
     tau += thickness;
   }
   const ReferenceField field(volume, classification);
-  const LightMarch march(
-      field, volume.indexToWorld,
-      {.lights = {{.place = worldLight, .atInfinity = false, .intensity = 2.0}}, .phaseG = kPhaseG}, {.place = origin}, 0);
+  const LightMarch march(field, volume, classification,
+                         {.lights = {{.place = worldLight, .atInfinity = false, .intensity = 2.0}}, .phaseG = kPhaseG});
   const RaySum sum = marchRay(field,
                               {.origin = origin,
                                .direction = direction,

@@ -168,11 +168,12 @@ void PrintTo(const LightDefect& defect, std::ostream* stream) {
 constexpr LightDefect kLightDefects[] = {
     {"None", "", nullptr},
     {"LightElsewhere", "gather ", [](Lighting& l) { l.lights[0].place.x += 0.1; }},
-    {"LightBrighter", "gather samples", [](Lighting& l) { l.lights[0].intensity *= 1.02; }},
-    {"TintStronger", "gather samples", [](Lighting& l) { l.tint.r *= 1.05; }},
+    {"LightBrighter", "gather ", [](Lighting& l) { l.lights[0].intensity *= 1.02; }},
+    {"TintStronger", "gather ", [](Lighting& l) { l.tint.r *= 1.05; }},
     {"SurfaceWeaker", "gather samples", [](Lighting& l) { l.surface *= 0.9; }},
-    {"PhaseNarrower", "gather samples", [](Lighting& l) { l.phaseG *= 1.1; }},
-    {"AmbientBrighter", "gather samples", [](Lighting& l) { l.ambient *= 1.02; }},
+    {"PhaseNarrower", "gather ", [](Lighting& l) { l.phaseG *= 1.1; }},
+    {"AmbientBrighter", "gather scattered", [](Lighting& l) { l.ambient *= 1.1; }},
+    {"FewerOrders", "gather ", [](Lighting& l) { l.scattering = l.scattering == kAllOrders ? 3 : l.scattering; }},
 };
 
 class GatherLightMutation : public DeviceTest, public testing::WithParamInterface<LightDefect> {};

@@ -48,7 +48,7 @@ struct SteppedGather : GatherOutputs {
       medium.push_back(downloadMedium(device, built.volume, level));
     if (alterMedium) alterMedium(device, built);
     volume.emplace(device, source, classification, built, times);  // what was altered for another frame is not kept
-    volume->prepare(shading, times);
+    volume->prepare(shading);
     run([&](Commands& commands) { volume->record(commands, shading); });
     volume->describe(rays);
     if (alterQuads) alterQuads(device, volume->quads(rays.mainAxis));

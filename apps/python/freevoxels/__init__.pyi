@@ -75,8 +75,7 @@ class _Light(TypedDict, total=False):
     light_attenuation: Literal["table", "exact", "auto"]
     shading: Literal["auto", "scatter", "gradient"]
     surface_share: float
-    scattering: int
-    scattering_scale: float
+    scattering: int | Literal["all"]
 
 class _Method(TypedDict, total=False):
     draw: Literal["gather", "splats"]

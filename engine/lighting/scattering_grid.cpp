@@ -1,0 +1,290 @@
+#include "engine/lighting/scattering_grid.h"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+
+#include "embedded/scattering_collect.h"
+#include "embedded/scattering_combine.h"
+#include "embedded/scattering_direct.h"
+#include "embedded/scattering_dots.h"
+#include "embedded/scattering_refine.h"
+#include "embedded/scattering_source.h"
+#include "embedded/scattering_sweep.h"
+#include "embedded/scattering_texels.h"
+#include "engine/core/error.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr int kDirections = 26;
+/// Directions are swept together as far as their light takes no more than this, the memory that a solution needs least.
+constexpr std::uint64_t kBatchBytes = std::uint64_t(4) << 20;
+
+int batchOf(std::size_t cells, int channels) {
+  const std::uint64_t bytes = cells * std::size_t(channels) * sizeof(float);
+  const int most = int(std::clamp<std::uint64_t>(kBatchBytes / bytes, 1, kDirections));
+  const int batches = (kDirections + most - 1) / most;
+  return (kDirections + batches - 1) / batches;
+}
+
+bool isGreyLight(const Lighting& lighting) {
+  const auto grey = [](const glm::dvec3& color) { return color.r == color.g && color.g == color.b; };
+  return !lighting.environment && grey(lighting.ambient) && grey(lighting.tint) &&
+         std::ranges::all_of(lighting.lights, [&](const Light& light) { return grey(light.color); });
+}
+
+/// The radiance with which lines along each direction enter the volume. Its mean is that of the surroundings.
+std::vector<glm::dvec3> skyOf(const Lighting& lighting, std::span<const QuadratureDirection> directions, const glm::dmat4& indexToWorld) {
+  std::vector<glm::dvec3> sky(directions.size(), lighting.ambient);
+  if (!lighting.environment) return sky;
+  const std::vector<glm::dvec3> around = directionRadiances(*lighting.environment, DirectionSet::Directions26, indexToWorld);
+  const std::vector<double> shares = directionShares(DirectionSet::Directions26, indexToWorld);
+  glm::dvec3 mean(0.0), ofRule(0.0);
+  for (std::size_t i = 0; i < sky.size(); ++i) {
+    mean += shares[i] * around[i];
+    ofRule += directions[i].weight * around[i];
+  }
+  for (std::size_t i = 0; i < sky.size(); ++i)  // light from a direction travels along the opposite one
+    sky[sky.size() - 1 - i] += around[i] * glm::mix(mean / ofRule, glm::dvec3(1.0), glm::equal(ofRule, glm::dvec3(0.0)));
+  return sky;
+}
+
+Buffer makeBuffer(const Device& device, std::size_t values, const char* name, MemoryUse use = MemoryUse::Device) {
+  return Buffer(device, std::max<std::size_t>(values, 1) * sizeof(float), use, name);
+}
+
+}  // namespace
+
+std::uint64_t ScatteringGrid::bytes(std::size_t cells, int channels, bool hasPhase) {
+  const std::uint64_t planes = std::uint64_t(channels) * (hasPhase ? 4 : 1);
+  const std::uint64_t vectors = planes * (shader::kMaxBasis + 3), medium = 3 * std::uint64_t(channels);
+  return cells * sizeof(float) * (vectors + medium + std::uint64_t(batchOf(cells, channels) * channels));
+}
+
+ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& medium, const Lighting& lighting)
+    : device_(device), medium_(medium), directions_(sphereQuadrature(medium.indexToWorld())), count_(medium.grid().count()) {
+  const PhaseSplit split = splitPhase(lighting);
+  channels_ = medium.isGrey() && isGreyLight(lighting) ? 1 : 3;
+  moments_ = split.g != 0.0 ? 4 : 1;
+  flux_ = 3.0 * split.g;
+  tinted_ = channels_ == 3 && (split.forward > 0.0 || lighting.isTinted());
+  hasSky_ = lighting.hasAmbient();
+  emits_ = medium.emits();
+  lit_ = !lighting.lights.empty();
+  narrowing_ = lighting.tint * (1.0 - split.forward * medium.meanAlbedo());
+  batch_ = batchOf(count_, channels_);
+  compileAhead();
+
+  std::vector<float> planes;
+  const auto addPlane = [&](auto&& value) {
+    for (const ScatteringMedium::Cell& cell : medium.cells()) planes.push_back(float(value(cell)));
+  };
+  for (int c = 0; c < (tinted_ ? channels_ : 1); ++c)
+    addPlane([&](const auto& cell) { return lighting.tint[c] * (cell.extinction - split.forward * cell.scattering[c]); });
+  for (int c = 0; c < channels_; ++c)
+    addPlane([&](const auto& cell) { return lighting.tint[c] * (1.0 - split.forward) * cell.scattering[c]; });
+  for (int c = 0; c < channels_ && emits_; ++c) addPlane([&](const auto& cell) { return cell.emission[c]; });
+  mediumPlanes_ = makeBuffer(device, planes.size(), "scattering medium");
+  upload(device, mediumPlanes_, std::as_bytes(std::span(planes)));
+
+  const std::vector<glm::dvec3> sky = skyOf(lighting, directions_, medium.indexToWorld());
+  std::vector<shader::SweepDirection> sweepDirections;
+  for (std::size_t i = 0; i < directions_.size(); ++i) {
+    const QuadratureDirection& direction = directions_[i];
+    sweepDirections.push_back({.step = direction.step,
+                               .stepLength = float(medium.grid().edge * direction.length),
+                               .unit = direction.unit,
+                               .weight = float(direction.weight),
+                               .sky = sky[i]});
+  }
+  sweepDirections_ = Buffer(device, std::span(sweepDirections).size_bytes(), MemoryUse::Device, "scattering directions");
+  upload(device, sweepDirections_, std::as_bytes(std::span(sweepDirections)));
+
+  const auto vectorSize = std::size_t(vectorLength());
+  vectors_ = makeBuffer(device, (kBasis + shader::kMaxBasis + 1) * vectorSize, "scattering vectors");
+  direct_ = makeBuffer(device, vectorSize, "direct light of cells");
+  sources_ = makeBuffer(device, vectorSize, "scattering sources");
+  light_ = makeBuffer(device, std::size_t(batch_ * channels_) * count_, "light of directions");
+  sums_ = makeBuffer(device, std::size_t(shader::kMaxBasis + 2) * shader::kDotGroups, "scattering sums", MemoryUse::Readback);
+  Commands commands(device);
+  commands.beginPass("scattering");
+  commands.clear(vectors_);
+  commands.submitAndWait();
+  if (lit_) makeDirect(lighting);
+}
+
+/// Asks for all pipelines at once, so that they are compiled at the same time.
+void ScatteringGrid::compileAhead() const {
+  if (lit_) makeComputePipeline(device_, shaders::scattering_direct, constants());
+  makeComputePipeline(device_, shaders::scattering_source, constants());
+  makeComputePipeline(device_, shaders::scattering_sweep, sweepConstants());
+  makeComputePipeline(device_, shaders::scattering_collect, constants());
+  for (const Shader* shader :
+       {&shaders::scattering_dots, &shaders::scattering_combine, &shaders::scattering_refine, &shaders::scattering_texels})
+    makeComputePipeline(device_, *shader);
+}
+
+void ScatteringGrid::makeDirect(const Lighting& lighting) {
+  const CellGrid& fine = medium_.directGrid();
+  const std::vector<float> extinctions = medium_.directExtinction();
+  const Buffer extinction = makeBuffer(device_, extinctions.size(), "extinctions of cells");
+  upload(device_, extinction, std::as_bytes(std::span(extinctions)));
+  const Pipeline pass = makeComputePipeline(device_, shaders::scattering_direct, constants());
+  const std::array<Binding, 2> bindings{&extinction, &direct_};
+  Commands commands(device_);
+  commands.beginPass("scattering");
+  for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
+    const Light& light = lighting.lights[i];
+    const RaySource source = lightSource(light, medium_.indexToWorld());
+    const shader::ScatteringDirectPush push{
+        .cells = medium_.grid().cells,
+        .directCells = fine.cells,
+        .ratio = medium_.grid().edge / fine.edge,
+        .atInfinity = light.atInfinity ? 1 : 0,
+        .place = light.atInfinity ? source.place / std::max({std::abs(source.place.x), std::abs(source.place.y), std::abs(source.place.z)})
+                                  : (source.place + 0.5) / double(fine.edge) - 0.5,
+        .radiance = light.intensity / (4.0 * std::numbers::pi) * light.color,
+        .narrowing = narrowing_,
+        .isFirst = i == 0 ? 1 : 0,
+        .directToWorld = glm::dmat3(medium_.indexToWorld()) * double(fine.edge)};
+    commands.dispatchLinear(pass, bindings, push, count_);
+    commands.barrier(kComputeStage, kComputeStage);
+  }
+  commands.submitAndWait();
+}
+
+void ScatteringGrid::startFrom(const ScatteringGrid& coarse) {
+  FV_CHECK_EQ(coarse.planes(), planes());
+  Commands commands(device_);
+  commands.beginPass("scattering");
+  const std::array<Binding, 2> bindings{&coarse.vectors_, &vectors_};
+  commands.dispatchLinear(
+      makeComputePipeline(device_, shaders::scattering_refine), bindings,
+      shader::ScatteringRefinePush{.cells = medium_.grid().cells, .coarseCells = coarse.medium_.grid().cells, .planes = planes()}, count_);
+  commands.submitAndWait();
+}
+
+void ScatteringGrid::sweep(const Sweep& wanted, const Progress& progress) {
+  Commands commands(device_);
+  commands.beginPass("scattering");
+  const int scattering = tinted_ ? channels_ : 1;
+  const shader::ScatteringSourcePush sources{.count = int(count_),
+                                             .scattering = scattering,
+                                             .emission = wanted.emission && emits_ ? scattering + channels_ : -1,
+                                             .from = wanted.scattered,
+                                             .direct = wanted.direct && lit_ ? 0 : -1};
+  const std::array<Binding, 4> sourceBindings{&mediumPlanes_, &vectors_, &direct_, &sources_};
+  commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_source, constants()), sourceBindings, sources, count_);
+  commands.barrier(kComputeStage, kComputeStage);
+  const Pipeline sweepPass = makeComputePipeline(device_, shaders::scattering_sweep, sweepConstants());
+  const Pipeline collectPass = makeComputePipeline(device_, shaders::scattering_collect, constants());
+  const std::array<Binding, 4> sweepBindings{&mediumPlanes_, &sources_, &sweepDirections_, &light_};
+  const std::array<Binding, 3> collectBindings{&sweepDirections_, &light_, &vectors_};
+  const glm::ivec3 cells = medium_.grid().cells;
+  const std::uint64_t lines = std::max({std::uint64_t(cells.x) * std::uint64_t(cells.y), std::uint64_t(cells.x) * std::uint64_t(cells.z),
+                                        std::uint64_t(cells.y) * std::uint64_t(cells.z)});
+  for (int first = 0; first < kDirections; first += batch_) {
+    const int batch = std::min(batch_, kDirections - first);
+    commands.dispatchLinear(
+        sweepPass, sweepBindings,
+        shader::ScatteringSweepPush{.cells = cells, .firstDirection = first, .hasSky = wanted.sky && hasSky_ ? 1 : 0, .flux = float(flux_)},
+        lines, std::uint32_t(batch));
+    commands.barrier(kComputeStage, kComputeStage);
+    commands.dispatchLinear(collectPass, collectBindings,
+                            shader::ScatteringCollectPush{.count = int(count_),
+                                                          .firstDirection = first,
+                                                          .directionCount = batch,
+                                                          .isFirst = first == 0 ? 1 : 0,
+                                                          .isLast = first + batch == kDirections ? 1 : 0,
+                                                          .from = wanted.from,
+                                                          .to = wanted.to,
+                                                          .ofFrom = wanted.ofFrom,
+                                                          .ofSum = wanted.ofSum},
+                            count_);
+    commands.barrier(kComputeStage, kComputeStage);
+  }
+  commands.submitAndWait(progress);
+}
+
+void ScatteringGrid::sweepResidual(int to, const Progress& progress) {
+  sweep(
+      {.scattered = kSolution, .direct = true, .emission = true, .sky = true, .from = kSolution, .to = to, .ofFrom = -1.0f, .ofSum = 1.0f},
+      progress);
+}
+
+void ScatteringGrid::sweepDifference(int from, int to, const Progress& progress) {
+  sweep({.scattered = from, .direct = false, .emission = false, .sky = false, .from = from, .to = to, .ofFrom = 1.0f, .ofSum = -1.0f},
+        progress);
+}
+
+int ScatteringGrid::sweepOrders(int orders, const Progress& progress) {
+  int sets = 0;
+  for (int order = 1; order <= orders; ++order) {
+    // What reaches the medium unscattered is scattered once where it is seen.
+    if (order == 1 && !hasSky_ && !emits_) continue;
+    sweep({.scattered = order == 1 ? -1 : kSolution,
+           .direct = order > 1,
+           .emission = true,
+           .sky = true,
+           .from = kSolution,
+           .to = kBasis,
+           .ofFrom = 0.0f,
+           .ofSum = 1.0f},
+          progress);
+    combine({.to = kSolution, .from = kBasis});
+    ++sets;
+  }
+  return sets;
+}
+
+std::vector<double> ScatteringGrid::dots(int vector, int first, int count) {
+  FV_CHECK_LE(count, shader::kMaxBasis + 2);
+  Commands commands(device_);
+  commands.beginPass("scattering");
+  const std::array<Binding, 2> bindings{&vectors_, &sums_};
+  commands.dispatch(makeComputePipeline(device_, shaders::scattering_dots), bindings,
+                    shader::ScatteringDotsPush{.values = vectorLength(), .vector = vector, .first = first, .count = count},
+                    {shader::kDotThreads * shader::kDotGroups, 1, 1});
+  commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_HOST_BIT);
+  commands.submitAndWait();
+  const auto* const parts = reinterpret_cast<const float*>(sums_.mapped());
+  std::vector<double> result(std::size_t(count), 0.0);
+  for (std::size_t product = 0; product < result.size(); ++product)
+    for (std::size_t group = 0; group < std::size_t(shader::kDotGroups); ++group)
+      result[product] += double(parts[product * std::size_t(shader::kDotGroups) + group]);
+  return result;
+}
+
+void ScatteringGrid::combine(const Combination& combination) {
+  FV_CHECK_LE(combination.factors.size(), std::size_t(shader::kMaxBasis));
+  shader::ScatteringCombinePush push{.values = vectorLength(),
+                                     .to = combination.to,
+                                     .from = combination.from,
+                                     .first = combination.first,
+                                     .count = int(combination.factors.size()),
+                                     .scale = float(combination.scale),
+                                     .factors = {}};
+  for (std::size_t i = 0; i < combination.factors.size(); ++i) push.factors[i] = float(combination.factors[i]);
+  Commands commands(device_);
+  commands.beginPass("scattering");
+  const std::array<Binding, 1> bindings{&vectors_};
+  commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_combine), bindings, push, std::uint64_t(vectorLength()));
+  commands.submitAndWait();
+}
+
+Buffer ScatteringGrid::makeTexels() {
+  Buffer texels(device_, count_ * std::size_t(moments_) * sizeof(glm::vec4), MemoryUse::Device, "scattered light",
+                VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  Commands commands(device_);
+  commands.beginPass("scattering");
+  const std::array<Binding, 2> bindings{&vectors_, &texels};
+  commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_texels), bindings,
+                          shader::ScatteringTexelsPush{.count = int(count_), .channels = channels_, .moments = moments_}, count_);
+  commands.submitAndWait();
+  return texels;
+}
+
+}  // namespace freevoxels

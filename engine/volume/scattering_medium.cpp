@@ -1,0 +1,141 @@
+#include "engine/volume/scattering_medium.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace freevoxels {
+
+namespace {
+
+/// Extinction and colour by scalar: from a table if there is a transfer function. Scalars beyond the volume's range, which means of coarse
+/// levels may be, have the values of its end.
+class MediumTable {
+ public:
+  MediumTable(const Volume& volume, const Classification& classification)
+      : scale_(std::min(classification.densityScale, double(std::numeric_limits<float>::max()))),
+        albedo_(classification.albedo),
+        low_(volume.minimum) {
+    if (!classification.transferFunction) return;
+    if (volume.maximum > volume.minimum) perScalar_ = double(kIntervals) / (double(volume.maximum) - low_);
+    for (int i = 0; i <= kIntervals; ++i)
+      values_.push_back(classify(classification, float(std::lerp(low_, double(volume.maximum), double(i) / kIntervals))));
+  }
+  double extinctionAt(float scalar) const {
+    if (scalar == kInactiveVoxel) return 0.0;
+    return values_.empty() ? std::min(std::max(double(scalar), 0.0) * scale_, kMaximumExtinction) : entry(scalar).extinction;
+  }
+  glm::dvec3 colorAt(float scalar) const { return values_.empty() ? albedo_ : entry(scalar).color; }
+
+ private:
+  static constexpr int kIntervals = 4096;
+  const ClassifiedVoxel& entry(float scalar) const {
+    return values_[std::size_t(std::clamp((double(scalar) - low_) * perScalar_, 0.0, double(kIntervals)) + 0.5)];
+  }
+
+  double scale_;
+  glm::dvec3 albedo_;
+  double low_, perScalar_ = 0.0;  ///< a float does not hold the extent of any range, or its inverse
+  std::vector<ClassifiedVoxel> values_;
+};
+
+/// The smallest edge, a multiple of `unit`, of which there are at most `most` cells.
+int edgeFor(glm::ivec3 dimensions, std::uint64_t most, int unit) {
+  int edge = unit;
+  while (CellGrid(dimensions, edge).count() > most) edge += unit;
+  return edge;
+}
+
+bool isGreyColor(const glm::dvec3& color) {
+  return color.r == color.g && color.g == color.b;
+}
+
+}  // namespace
+
+ScatteringMedium::ScatteringMedium(glm::ivec3 dimensions, const glm::dmat4& indexToWorld)
+    : indexToWorld_(indexToWorld),
+      directGrid_(dimensions, edgeFor(dimensions, kMaxDirectCells, 1)),
+      cells_(),
+      direct_(directGrid_.count(), 0.0) {
+  grid_ = CellGrid(dimensions, edgeFor(dimensions, kMaxScatteringCells, directGrid_.edge));
+  cells_.resize(grid_.count());
+}
+
+ScatteringMedium::ScatteringMedium(const Volume& volume, const Classification& classification)
+    : ScatteringMedium(volume.dimensions, volume.indexToWorld) {
+  add(volume, glm::ivec3(0), classification);
+}
+
+void ScatteringMedium::add(const Volume& part, glm::ivec3 first, const Classification& classification) {
+  const MediumTable table(part, classification);
+  const glm::ivec3 end = first + part.dimensions;
+  const auto volumeOf = [](int edge) { return double(edge) * edge * edge; };
+  const double share = 1.0 / volumeOf(grid_.edge), directShare = 1.0 / volumeOf(directGrid_.edge);
+  const bool hasGrid = part.albedo.has_value() && !classification.transferFunction;
+  const bool emits = classification.emission && part.temperature;
+  tbb::parallel_for(first.z / grid_.edge, (end.z + grid_.edge - 1) / grid_.edge, [&](int plane) {
+    std::vector<float> scalars(std::size_t(part.dimensions.x)), temperatures(scalars.size());
+    for (int z = std::max(plane * grid_.edge, first.z); z < std::min((plane + 1) * grid_.edge, end.z); ++z)
+      for (int y = first.y; y < end.y; ++y) {
+        part.scalars.copyRow(y - first.y, z - first.z, scalars);
+        if (emits) part.temperature->values.copyRow(y - first.y, z - first.z, temperatures);
+        Cell* const row = &cells_[grid_.index({0, y / grid_.edge, plane})];
+        double* const directRow = &direct_[directGrid_.index({0, y / directGrid_.edge, z / directGrid_.edge})];
+        for (int x = first.x; x < end.x; ++x) {
+          const float scalar = scalars[std::size_t(x - first.x)];
+          Cell& cell = row[x / grid_.edge];
+          if (emits) cell.emission += share * emittedLight(*classification.emission, temperatures[std::size_t(x - first.x)]);
+          const double extinction = table.extinctionAt(scalar);
+          if (extinction == 0.0) continue;
+          const glm::dvec3 albedo =
+              hasGrid ? glm::dvec3(albedoOf(classification, *part.albedo, glm::ivec3(x, y, z) - first)) : table.colorAt(scalar);
+          cell.extinction += share * extinction;
+          cell.scattering += share * extinction * albedo;
+          directRow[x / directGrid_.edge] += directShare * extinction;
+        }
+      }
+  });
+}
+
+ScatteringMedium ScatteringMedium::coarser() const {
+  ScatteringMedium result = *this;
+  result.directGrid_ = grid_;
+  result.grid_.cells = (grid_.cells + 1) / 2;
+  result.grid_.edge = 2 * grid_.edge;
+  result.cells_.assign(result.grid_.count(), {});
+  result.direct_.clear();
+  glm::ivec3 cell;
+  for (cell.z = 0; cell.z < grid_.cells.z; ++cell.z)
+    for (cell.y = 0; cell.y < grid_.cells.y; ++cell.y)
+      for (cell.x = 0; cell.x < grid_.cells.x; ++cell.x) {
+        const Cell& own = cells_[grid_.index(cell)];
+        Cell& sum = result.cells_[result.grid_.index(cell / 2)];
+        sum.extinction += own.extinction / 8.0;
+        sum.scattering += own.scattering / 8.0;
+        sum.emission += own.emission / 8.0;
+        result.direct_.push_back(own.extinction);
+      }
+  return result;
+}
+
+glm::dvec3 ScatteringMedium::meanAlbedo() const {
+  double extinction = 0.0;
+  glm::dvec3 scattering(0.0);
+  for (const Cell& cell : cells_) {
+    extinction += cell.extinction;
+    scattering += cell.scattering;
+  }
+  return extinction > 0.0 ? scattering / extinction : glm::dvec3(0.0);
+}
+
+bool ScatteringMedium::emits() const {
+  return std::ranges::any_of(cells_, [](const Cell& cell) { return cell.emission != glm::dvec3(0.0); });
+}
+
+bool ScatteringMedium::isGrey() const {
+  return std::ranges::all_of(cells_, [](const Cell& cell) { return isGreyColor(cell.scattering) && isGreyColor(cell.emission); });
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,30 @@
+#version 460
+// What cells send out per world unit: what they scatter, by moments of direction, and what they emit.
+#extension GL_GOOGLE_include_directive : require
+#include "scattering_interface.h"
+
+layout(constant_id = 0) const int kChannels = 1;
+layout(constant_id = 1) const bool kFlux = false;
+
+layout(local_size_x = kScatteringThreads) in;
+layout(scalar, push_constant) uniform Push { ScatteringSourcePush push; };
+layout(binding = 0, scalar) readonly restrict buffer Medium { float medium[]; };
+layout(binding = 1, scalar) readonly restrict buffer Vectors { float vectors[]; };
+layout(binding = 2, scalar) readonly restrict buffer Direct { float direct[]; };
+layout(binding = 3, scalar) writeonly restrict buffer Sources { float sources[]; };
+
+void main() {
+  const int cell = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
+  if (cell >= push.count) return;
+  const int planes = kChannels * (kFlux ? 4 : 1);
+  [[unroll]] for (int plane = 0; plane < 12; ++plane) {
+    if (plane >= planes) continue;
+    const int place = plane * push.count + cell, channel = plane % kChannels;
+    float light = 0.0;
+    if (push.from >= 0) light += vectors[push.from * planes * push.count + place];
+    if (push.direct >= 0) light += direct[place];
+    float source = medium[(push.scattering + channel) * push.count + cell] * light;
+    if (push.emission >= 0 && plane < kChannels) source += medium[(push.emission + channel) * push.count + cell];
+    sources[place] = source;
+  }
+}
