@@ -21,7 +21,7 @@ namespace {
 
 constexpr int kDirections = 26;
 /// Directions are swept together as far as their light takes no more than this, the memory that a solution needs least.
-constexpr std::uint64_t kBatchBytes = std::uint64_t(4) << 20;
+constexpr std::uint64_t kBatchBytes = std::uint64_t(2) << 20;
 
 int batchOf(std::size_t cells, int channels) {
   const std::uint64_t bytes = cells * std::size_t(channels) * sizeof(float);
@@ -104,8 +104,9 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   upload(device, sweepDirections_, std::as_bytes(std::span(sweepDirections)));
 
   const auto vectorSize = std::size_t(vectorLength());
-  vectors_ = makeBuffer(device, (kBasis + shader::kMaxBasis + 1) * vectorSize, "scattering vectors");
   direct_ = makeBuffer(device, vectorSize, "direct light of cells");
+  if (lit_) makeDirect(lighting);  // with buffers of its own, before there are more
+  vectors_ = makeBuffer(device, (kBasis + shader::kMaxBasis + 1) * vectorSize, "scattering vectors");
   sources_ = makeBuffer(device, vectorSize, "scattering sources");
   light_ = makeBuffer(device, std::size_t(batch_ * channels_) * count_, "light of directions");
   sums_ = makeBuffer(device, std::size_t(shader::kMaxBasis + 2) * shader::kDotGroups, "scattering sums", MemoryUse::Readback);
@@ -113,7 +114,6 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   commands.beginPass("scattering");
   commands.clear(vectors_);
   commands.submitAndWait();
-  if (lit_) makeDirect(lighting);
 }
 
 /// Asks for all pipelines at once, so that they are compiled at the same time.
