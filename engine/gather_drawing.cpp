@@ -7,6 +7,7 @@
 
 #include "engine/core/error.h"
 #include "engine/gathering/gather_rows.h"
+#include "engine/splatting/accumulate_pass.h"
 
 namespace freevoxels {
 
