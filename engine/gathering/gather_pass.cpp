@@ -58,8 +58,8 @@ std::uint64_t latticeSize(const shader::GatherFrame& frame) {
 }  // namespace
 
 GatherPass::GatherPass(const Device& device)
-    : device_(device), frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame",
-             VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
+    : device_(device),
+      frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       noDistance_(device, glm::ivec2(1), kTargetScalarFormat, "no distance"),
       noLight_(device, sizeof(glm::vec4), MemoryUse::Device, "no scattered light", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
       noLightTexels_(device, noLight_) {}

@@ -82,10 +82,13 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   const auto addPlane = [&](auto&& value) {
     for (const ScatteringMedium::Cell& cell : medium.cells()) planes.push_back(float(value(cell)));
   };
+  const std::vector<double> surfaces = lighting.surface > 0.0 ? medium.surfaceShares() : std::vector<double>(count_, 0.0);
   for (int c = 0; c < (tinted_ ? channels_ : 1); ++c)
     addPlane([&](const auto& cell) { return lighting.tint[c] * (cell.extinction - split.forward * cell.scattering[c]); });
   for (int c = 0; c < channels_; ++c)
-    addPlane([&](const auto& cell) { return lighting.tint[c] * (1.0 - split.forward) * cell.scattering[c]; });
+    for (std::size_t i = 0; i < count_; ++i)
+      planes.push_back(
+          float(lighting.tint[c] * (1.0 - split.forward) * (1.0 - lighting.surface * surfaces[i]) * medium.cells()[i].scattering[c]));
   for (int c = 0; c < channels_ && emits_; ++c) addPlane([&](const auto& cell) { return cell.emission[c]; });
   mediumPlanes_ = makeBuffer(device, planes.size(), "scattering medium");
   upload(device, mediumPlanes_, std::as_bytes(std::span(planes)));

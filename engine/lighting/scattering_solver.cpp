@@ -120,7 +120,7 @@ class Gmres {
 /// The same light for all that a solution depends on.
 bool isSameLight(const Lighting& a, const Lighting& b) {
   return a.lights == b.lights && a.ambient == b.ambient && a.environment == b.environment && a.tint == b.tint && a.phaseG == b.phaseG &&
-         a.scattering == b.scattering;
+         a.scattering == b.scattering && a.surface == b.surface;
 }
 
 /// Coarser grids are made while there are more cells than this.

@@ -34,7 +34,7 @@ class ScatteringSolver {
  public:
   ScatteringSolver(const Device& device, ScatteringMedium medium) : device_(device), medium_(std::move(medium)) {}
 
-  /// Solves for this light, unless it is that of the last call; blocks. The light's attenuation and surface do not matter. Fails with
+  /// Solves for this light, unless it is that of the last call; blocks. The light's attenuation does not matter. Fails with
   /// ErrorKind::OutOfMemory; after an exception nothing is solved.
   void solve(const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress);
   /// Changes with each solution.

@@ -44,9 +44,11 @@ class Transport {
         direct_(grid_.count()),
         light_(grid_.count()),
         sky_(skyOf(lighting)) {
-    for (const ScatteringMedium::Cell& cell : medium.cells()) {
+    const std::vector<double> surfaces = medium.surfaceShares();
+    for (std::size_t i = 0; i < grid_.count(); ++i) {
+      const ScatteringMedium::Cell& cell = medium.cells()[i];
       extinction_.push_back(lighting.tint * (cell.extinction - split_.forward * cell.scattering));
-      scattering_.push_back(lighting.tint * (1.0 - split_.forward) * cell.scattering);
+      scattering_.push_back(lighting.tint * (1.0 - split_.forward) * (1.0 - lighting.surface * surfaces[i]) * cell.scattering);
     }
     for (const Light& light : lighting.lights) addDirect(light);
   }

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <limits>
 
+#include "engine/scene/lighting.h"
+
 namespace freevoxels {
 
 namespace {
@@ -118,6 +120,28 @@ ScatteringMedium ScatteringMedium::coarser() const {
         result.direct_.push_back(own.extinction);
       }
   return result;
+}
+
+std::vector<double> ScatteringMedium::surfaceShares() const {
+  const auto extinctionAt = [&](glm::ivec3 cell) {
+    const bool within = glm::all(glm::greaterThanEqual(cell, glm::ivec3(0))) && glm::all(glm::lessThan(cell, grid_.cells));
+    return within ? cells_[grid_.index(cell)].extinction : 0.0;
+  };
+  std::vector<double> shares;
+  glm::ivec3 cell;
+  for (cell.z = 0; cell.z < grid_.cells.z; ++cell.z)
+    for (cell.y = 0; cell.y < grid_.cells.y; ++cell.y)
+      for (cell.x = 0; cell.x < grid_.cells.x; ++cell.x) {
+        glm::dvec3 gradient;
+        for (int axis = 0; axis < 3; ++axis) {
+          glm::ivec3 step(0);
+          step[axis] = 1;
+          gradient[axis] = 0.5 * (extinctionAt(cell + step) - extinctionAt(cell - step));
+        }
+        const double own = extinctionAt(cell);
+        shares.push_back(own > 0.0 ? surfaceShare(glm::length(gradient) / own) : 0.0);
+      }
+  return shares;
 }
 
 glm::dvec3 ScatteringMedium::meanAlbedo() const {

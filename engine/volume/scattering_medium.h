@@ -55,6 +55,9 @@ class ScatteringMedium {
     glm::dvec3 emission{0.0};
   };
   std::span<const Cell> cells() const { return cells_; }
+  /// The fraction in 0..1 of each cell that counts as surfaces where these are shaded: by the relative change of extinction from cell to
+  /// cell (surfaceShare). What surfaces reflect is not scattered by the fog.
+  std::vector<double> surfaceShares() const;
   /// The mean albedo of the medium, weighted by extinction.
   glm::dvec3 meanAlbedo() const;
   bool emits() const;

@@ -46,6 +46,9 @@ TEST_F(MultipleScatteringTest, TheDeviceSolvesTheEquationsThatTheReferenceSolves
   all.tint = {0.6, 1.0, 1.5};
   const Volume odd = randomVolume({19, 7, 34}, shearedTransform({19, 7, 34}), 0.6, 3.0);
   EXPECT_LT(errorOf(odd, {.densityScale = 0.3, .albedo = {0.99f, 0.8f, 0.5f}}, all), 0.01);
+  all.surface = 0.7;
+  EXPECT_LT(errorOf(odd, {.densityScale = 0.3, .albedo = {0.99f, 0.8f, 0.5f}}, all), 0.01);
+  all.surface = 0.0;
   all.phaseG = 0.7;
   EXPECT_LT(errorOf(cloud, white, all), 0.01);
   all.phaseG = -0.5;

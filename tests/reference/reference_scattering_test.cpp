@@ -133,8 +133,8 @@ double chandrasekharH(double albedo) {
   return at(1.0);
 }
 
-/// Light on a half space at right angles comes back with the radiance w / (8 pi) E H(1)² along the normal. Near the face the radiance changes
-/// abruptly from the directions that come in to those that go out, which 26 directions cannot show.
+/// Light on a half space at right angles comes back with the radiance w / (8 pi) E H(1)² along the normal. Near the face the radiance
+/// changes abruptly from the directions that come in to those that go out, which 26 directions cannot show.
 TEST(ReferenceScattering, AHalfSpaceReflectsWhatChandrasekharSays) {
   for (const double albedo : {0.5, 0.8}) {
     const auto reflected = [&](double sigma) {
