@@ -8,6 +8,7 @@
 
 #include "engine/core/error.h"
 #include "engine/octree/hierarchy_layout.h"
+#include "engine/volume/scattering_medium.h"
 #include "shaders/gather_interface.h"
 
 namespace freevoxels {
