@@ -56,7 +56,7 @@ struct FrameLighting {
   int lookup;                    // kLookup... for the transmittance to lights
   vec3 tint;                     // factor of the extinction between light and voxel
   float forward;                 // fraction of what is scattered that counts as not scattered
-  vec3 narrowing;                // mean factor of the extinction of light that this makes
+  vec3 deltaScale;               // mean factor of the extinction of light that this makes
   float phaseG;
   float surface;                 // fraction of the lights that is reflected like a surface
   ScatteredGrid scattered;

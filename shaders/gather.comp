@@ -241,7 +241,7 @@ void main() {
   colorBefore = before.rgb;
   sums.transmittance -= before.a;
   distanceSum = imageLoad(distances, sampleIndex).x;
-  if (kTinted) sums.colorTransmittance = pow(vec3(sums.transmittance), frame.colorNarrowing);
+  if (kTinted) sums.colorTransmittance = pow(vec3(sums.transmittance), frame.deltaScale);
 #endif
   // Scalars are marched apart from the levels of blocks behind them, so that neither loop has the code of the other: lavapipe executes
   // branches that no lane takes.

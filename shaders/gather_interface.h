@@ -127,7 +127,7 @@ struct GatherFrame {
   SampleLight lights[kMaxSampleLights];
   vec3 tint;              // factor of the extinction between light and voxel
   float forward;          // fraction of what is scattered that counts as not scattered, on the way to the eye
-  vec3 colorNarrowing;    // mean factor of the extinction that this makes
+  vec3 deltaScale;        // mean factor of the extinction that this makes
   ScatteredGrid scattered;  // whose texels are bound
   float phaseG;
   float surface;          // fraction of the lights that is reflected like a surface

@@ -67,7 +67,7 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
   const float own = depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth;
   vec3 leaving = vec3(own), depths = vec3(depth), before = vec3(sums.transmittance);
   if (kTinted) {  // what is scattered forwards within the segment goes on
-    depths = kSampled ? depth - segmentLength * frame.forward * frame.sourceUnit * medium.rgb : depth * frame.colorNarrowing;
+    depths = kSampled ? depth - segmentLength * frame.forward * frame.sourceUnit * medium.rgb : depth * frame.deltaScale;
     [[unroll]] for (int c = 0; c < 3; ++c) leaving[c] = meanTransmittance(depths[c]);
     before = sums.colorTransmittance;
     sums.colorTransmittance *= exp(-depths);

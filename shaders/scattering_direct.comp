@@ -69,7 +69,7 @@ void main() {
     const vec3 way = push.directToWorld * toLight;
     const float edge2 = pow(abs(determinant(push.directToWorld)), 2.0 / 3.0);
     const float distance2 = push.atInfinity != 0 ? 1.0 : max(dot(way, way), kNearestLight2 * edge2);
-    const vec3 reaching = own / distance2 * push.radiance * exp(-length1 * depth * push.narrowing);
+    const vec3 reaching = own / distance2 * push.radiance * exp(-length1 * depth * push.depthScale);
     const vec3 unit = way * inversesqrt(max(dot(way, way), 1e-30));
     sums[0] += reaching;
     if (kFlux) [[unroll]] for (int i = 0; i < 3; ++i) sums[1 + i] -= unit[i] * reaching;

@@ -33,7 +33,7 @@ struct ScatteringDirectPush {
   int atInfinity;
   vec3 place;          // of the light, direct cells; at infinity the direction towards it
   vec3 radiance;       // irradiance / 4 pi, for a position at distance 1
-  vec3 narrowing;      // factor of optical depths, by channel
+  vec3 depthScale;     // factor of optical depths, by channel
   int isFirst;         // whether it is the first light
   mat3 directToWorld;  // linear part
 };

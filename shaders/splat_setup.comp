@@ -37,16 +37,16 @@ void main() {
   const bool ofKernel = frame.kernelMean != 0 && block.level == 0;
   const float leaving = ofKernel ? kernelMean(block.center, direction, depth, toEye.depth) : selfAttenuation(depth);
   const float energy = sigma * leaving * peak;
-  vec3 color = colorOf(block, rank), goesOn = vec3(1.0);
+  vec3 color = colorOf(block, rank), deltaFactor = vec3(1.0);
   if (kLit && kTinted && frame.lighting.forward > 0.0) {  // what is scattered forwards goes on, to the eye as well
     [[unroll]] for (int c = 0; c < 3; ++c) {
-      const float narrowing = 1.0 - frame.lighting.forward * color[c];
-      goesOn[c] = selfAttenuation(narrowing * depth) / selfAttenuation(depth) * exp((1.0 - frame.lighting.narrowing[c]) * toEye.depth);
+      const float deltaScale = 1.0 - frame.lighting.forward * color[c];
+      deltaFactor[c] = selfAttenuation(deltaScale * depth) / selfAttenuation(depth) * exp((1.0 - frame.lighting.deltaScale[c]) * toEye.depth);
     }
   }
-  if (kLit) color *= goesOn * scatteredLight(block, sigma, rank, normalize(frame.indexToWorld * direction), depth).light;
+  if (kLit) color *= deltaFactor * scatteredLight(block, sigma, rank, normalize(frame.indexToWorld * direction), depth).light;
   splat.colorEnergy = vec4(energy * color, energy);
-  if (kEmits) splat.colorEnergy.rgb += goesOn * leaving * peak * frame.emissionUnit * unpackLight(storedEmission(rank));
+  if (kEmits) splat.colorEnergy.rgb += deltaFactor * leaving * peak * frame.emissionUnit * unpackLight(storedEmission(rank));
   splat.center = footprint.center;
   splat.halfExtent = footprint.halfExtent;
   splat.conic = footprint.conic;

@@ -174,7 +174,7 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
     frame.lights[i].lightsLast = glm::vec3(glm::greaterThan(fromLast, glm::dvec3(0.0)));
   }
   if (hasScattered()) frame.scattered = scattered_->onDevice();
-  frame.tint = lighting_->tint * colorNarrowing_;
+  frame.tint = lighting_->tint * deltaScale_;
   frame.forward = float(splitPhase(*lighting_).forward);
   frame.phaseG = float(lighting_->phaseG);
   frame.surface = float(lighting_->surface);

@@ -187,7 +187,7 @@ void GatherVolume::prepare(const Shading& shading) {
   viewDependent_ = viewDependent;
   scattered_ = shading.scattered;
   scatteredVersion_ = version;
-  colorNarrowing_ = shading.frame.setup.lighting.narrowing;
+  deltaScale_ = shading.frame.setup.lighting.deltaScale;
   if (shading.lighting != nullptr)
     lighting_ = *shading.lighting;
   else
@@ -356,7 +356,7 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
   frame.color = built_.volume.albedo / float(sourceUnit_);
-  frame.colorNarrowing = colorNarrowing_;
+  frame.deltaScale = deltaScale_;
   describeLights(frame);
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
 }

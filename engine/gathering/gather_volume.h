@@ -179,7 +179,7 @@ class GatherVolume {
   bool isSampled_ = false;
   const ScatteringSolver* scattered_ = nullptr;
   std::uint64_t scatteredVersion_ = 0;  ///< that the source terms were made for
-  glm::dvec3 colorNarrowing_{1.0};      ///< factor of the extinction that is left, as what is scattered forwards goes on
+  glm::dvec3 deltaScale_{1.0};          ///< factor of the extinction that is left, as what is scattered forwards goes on
   /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light.
   std::array<Buffer, shader::kMaxSampleLights> lightCodes_;
   std::uint32_t lightLevels_ = 0;

@@ -115,7 +115,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
           .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : int(settings.tableLookup()),
           .tint = lighting.tint,
           .forward = 0.0f,
-          .narrowing = glm::vec3(1.0f),
+          .deltaScale = glm::vec3(1.0f),
           .phaseG = float(lighting.phaseG),
           .surface = float(lighting.surface),
           .scattered = {},

@@ -36,22 +36,6 @@ bool isGreyLight(const Lighting& lighting) {
          std::ranges::all_of(lighting.lights, [&](const Light& light) { return grey(light.color); });
 }
 
-/// The radiance with which lines along each direction enter the volume. Its mean is that of the surroundings.
-std::vector<glm::dvec3> skyOf(const Lighting& lighting, std::span<const QuadratureDirection> directions, const glm::dmat4& indexToWorld) {
-  std::vector<glm::dvec3> sky(directions.size(), lighting.ambient);
-  if (!lighting.environment) return sky;
-  const std::vector<glm::dvec3> around = directionRadiances(*lighting.environment, DirectionSet::Directions26, indexToWorld);
-  const std::vector<double> shares = directionShares(DirectionSet::Directions26, indexToWorld);
-  glm::dvec3 mean(0.0), ofRule(0.0);
-  for (std::size_t i = 0; i < sky.size(); ++i) {
-    mean += shares[i] * around[i];
-    ofRule += directions[i].weight * around[i];
-  }
-  for (std::size_t i = 0; i < sky.size(); ++i)  // light from a direction travels along the opposite one
-    sky[sky.size() - 1 - i] += around[i] * glm::mix(mean / ofRule, glm::dvec3(1.0), glm::equal(ofRule, glm::dvec3(0.0)));
-  return sky;
-}
-
 Buffer makeBuffer(const Device& device, std::size_t values, const char* name, MemoryUse use = MemoryUse::Device) {
   return Buffer(device, std::max<std::size_t>(values, 1) * sizeof(float), use, name);
 }
@@ -74,7 +58,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   hasSky_ = lighting.hasAmbient();
   emits_ = medium.emits();
   lit_ = !lighting.lights.empty();
-  narrowing_ = lighting.tint * (1.0 - split.forward * medium.meanAlbedo());
+  depthScale_ = lighting.tint * deltaScaleOf(lighting, medium);
   batch_ = batchOf(count_, channels_);
   compileAhead();
 
@@ -93,7 +77,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   mediumPlanes_ = makeBuffer(device, planes.size(), "scattering medium");
   upload(device, mediumPlanes_, std::as_bytes(std::span(planes)));
 
-  const std::vector<glm::dvec3> sky = skyOf(lighting, directions_, medium.indexToWorld());
+  const std::vector<glm::dvec3> sky = surroundingRadiances(lighting, directions_, medium.indexToWorld());
   std::vector<shader::SweepDirection> sweepDirections;
   for (std::size_t i = 0; i < directions_.size(); ++i) {
     const QuadratureDirection& direction = directions_[i];
@@ -150,7 +134,7 @@ void ScatteringGrid::makeDirect(const Lighting& lighting) {
         .place = light.atInfinity ? source.place / std::max({std::abs(source.place.x), std::abs(source.place.y), std::abs(source.place.z)})
                                   : (source.place + 0.5) / double(fine.edge) - 0.5,
         .radiance = light.intensity / (4.0 * std::numbers::pi) * light.color,
-        .narrowing = narrowing_,
+        .depthScale = depthScale_,
         .isFirst = i == 0 ? 1 : 0,
         .directToWorld = glm::dmat3(medium_.indexToWorld()) * double(fine.edge)};
     commands.dispatchLinear(pass, bindings, push, count_);

@@ -71,7 +71,7 @@ class ScatteringGrid {
   double flux_ = 0.0;    ///< 3 g
   bool tinted_ = false;  ///< whether each channel has its own extinction
   bool hasSky_ = false, emits_ = false, lit_ = false;
-  glm::dvec3 narrowing_{1.0};  ///< factor of optical depths towards lights
+  glm::dvec3 depthScale_{1.0};  ///< factor of optical depths towards lights
   int batch_;                  ///< directions that are swept at a time
   Buffer mediumPlanes_, direct_, sources_, light_, vectors_, sweepDirections_, sums_;
 };

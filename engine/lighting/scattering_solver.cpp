@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "embedded/scattering_texels.h"
 #include "engine/core/error.h"
@@ -131,25 +130,27 @@ constexpr double kCoarseTolerance = 5e-3;
 }  // namespace
 
 bool hasScatteredLight(const Lighting& lighting, bool emits) {
-  return lighting.scattersAgain() || emits;
+  return lighting.hasIndirectLight() || emits;
 }
 
 std::uint64_t scatteringBytes(glm::ivec3 dimensions, bool hasPhase) {
-  return ScatteringGrid::bytes(ScatteringMedium(dimensions, glm::dmat4(1.0)).grid().count(), 3, hasPhase) * 8 / 7;
+  return ScatteringGrid::bytes(ScatteringMedium::gridOf(dimensions).count(), 3, hasPhase) * 8 / 7;
+}
+
+ScatteringSolver::ScatteringSolver(const Device& device, ScatteringMedium medium) : device_(device) {
+  media_.push_back(std::move(medium));
+  while (media_.back().grid().count() > kFewCells) media_.push_back(media_.back().coarser());
 }
 
 void ScatteringSolver::solve(const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress) {
   if (solved_ && isSameLight(*solved_, lighting)) return;
   solved_.reset();
   const StageTimer timer(times, "scattering");
-  std::vector<ScatteringMedium> media{medium_};
-  if (lighting.scattering == kAllOrders)
-    while (media.back().grid().count() > kFewCells) media.push_back(media.back().coarser());
-  facts_ = {.cells = medium_.grid().cells, .edge = medium_.grid().edge};
+  facts_ = {.cells = medium().grid().cells, .edge = medium().grid().edge};
   double reference = 0.0;
   std::unique_ptr<ScatteringGrid> coarse;
-  for (std::size_t level = media.size(); level-- > 0;) {
-    auto grid = std::make_unique<ScatteringGrid>(device_, media[level], lighting);
+  for (std::size_t level = lighting.scattering == kAllOrders ? media_.size() : 1; level-- > 0;) {
+    auto grid = std::make_unique<ScatteringGrid>(device_, media_[level], lighting);
     if (lighting.scattering != kAllOrders) {
       facts_.sets = grid->sweepOrders(lighting.scattering, progress);
       facts_.work = facts_.sets;
@@ -161,7 +162,7 @@ void ScatteringSolver::solve(const Lighting& lighting, std::vector<StageTime>& t
       const double first = gmres.solve(scale * reference, level > 0 ? kCoarseTolerance : kScatteringTolerance);
       reference = coarse ? scale * reference : first;
       facts_.sets = gmres.sets();
-      facts_.work += gmres.sets() * double(grid->cells()) / double(medium_.grid().count());
+      facts_.work += gmres.sets() * double(grid->cells()) / double(medium().grid().count());
       facts_.residual = gmres.residual();
     }
     coarse = std::move(grid);
@@ -170,6 +171,7 @@ void ScatteringSolver::solve(const Lighting& lighting, std::vector<StageTime>& t
   texels_ = TexelView(device_, texelBuffer_);
   solved_ = lighting;
   brightest_ = download().brightest();
+  deltaScale_ = deltaScaleOf(lighting, medium());
   ++version_;
 }
 
@@ -177,8 +179,8 @@ shader::ScatteredGrid ScatteringSolver::onDevice() const {
   FV_CHECK_EQ(solved_.has_value(), true);
   const PhaseSplit split = splitPhase(*solved_);
   return {.texels = addressWords(texelBuffer_.address()),
-          .cells = medium_.grid().cells,
-          .perVoxel = 1.0f / float(medium_.grid().edge),
+          .cells = medium().grid().cells,
+          .perVoxel = 1.0f / float(medium().grid().edge),
           .share = float(1.0 - split.forward),
           .flux = float(3.0 * split.g),
           .moments = split.g != 0.0 ? 4 : 1};
@@ -186,10 +188,10 @@ shader::ScatteredGrid ScatteringSolver::onDevice() const {
 
 ScatteredField ScatteringSolver::download() const {
   const shader::ScatteredGrid grid = onDevice();
-  std::vector<glm::vec4> texels(medium_.grid().count() * std::size_t(grid.moments));
+  std::vector<glm::vec4> texels(medium().grid().count() * std::size_t(grid.moments));
   freevoxels::download(device_, texelBuffer_, std::as_writable_bytes(std::span(texels)));
   ScatteredField field{
-      .cells = grid.cells, .edge = medium_.grid().edge, .share = double(grid.share), .flux = double(grid.flux), .mean = {}};
+      .cells = grid.cells, .edge = medium().grid().edge, .share = double(grid.share), .flux = double(grid.flux), .mean = {}};
   for (std::size_t i = 0; i < texels.size(); i += std::size_t(grid.moments)) {
     field.mean.emplace_back(texels[i]);
     if (grid.moments > 1) field.fluxes.push_back({glm::dvec3(texels[i + 1]), glm::dvec3(texels[i + 2]), glm::dvec3(texels[i + 3])});

@@ -3,11 +3,8 @@
 // 2007, Section 3.1, along 26 directions that add up light instead of optical depths. See engine/docs/method.md.
 
 #include <cstdint>
-#include <functional>
 #include <glm/glm.hpp>
-#include <memory>
 #include <optional>
-#include <span>
 #include <vector>
 
 #include "engine/core/stages.h"
@@ -32,7 +29,7 @@ inline constexpr double kScatteringTolerance = 3e-3;
 /// twice the edge. The result does not depend on lights of earlier calls.
 class ScatteringSolver {
  public:
-  ScatteringSolver(const Device& device, ScatteringMedium medium) : device_(device), medium_(std::move(medium)) {}
+  ScatteringSolver(const Device& device, ScatteringMedium medium);
 
   /// Solves for this light, unless it is that of the last call; blocks. The light's attenuation does not matter. Fails with
   /// ErrorKind::OutOfMemory; after an exception nothing is solved.
@@ -43,7 +40,9 @@ class ScatteringSolver {
   /// vec4: J of each cell, with a phase function followed by the flux along x, y and z (rgb).
   const TexelView& texels() const { return texels_; }
   shader::ScatteredGrid onDevice() const;
-  const ScatteringMedium& medium() const { return medium_; }
+  const ScatteringMedium& medium() const { return media_.front(); }
+  /// deltaScaleOf() the light.
+  const glm::dvec3& deltaScale() const { return deltaScale_; }
   /// The solution on the host. Waits.
   ScatteredField download() const;
   /// No point scatters more of this light than this radiance, for albedo 1.
@@ -53,11 +52,12 @@ class ScatteringSolver {
 
  private:
   const Device& device_;
-  const ScatteringMedium medium_;
+  std::vector<ScatteringMedium> media_;  ///< the medium, and the same in cells of twice the edge, again and again
   std::optional<Lighting> solved_;
   std::uint64_t version_ = 0;
   ScatteringFacts facts_;
   double brightest_ = 0.0;
+  glm::dvec3 deltaScale_{1.0};
   Buffer texelBuffer_;
   TexelView texels_;
 };

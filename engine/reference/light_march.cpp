@@ -18,14 +18,14 @@ LightMarch::LightMarch(const ReferenceField& field, const Volume& volume, const 
     : field_(field), toWorld_(volume.indexToWorld), lighting_(lighting) {
   for (const Light& light : lighting.lights) sources_.push_back(lightSource(light, volume.indexToWorld));
   const ScatteringMedium medium(volume, classification);
-  narrowing_ -= splitPhase(lighting).forward * medium.meanAlbedo();
-  if (lighting.scattersAgain() || medium.emits()) scattered_ = referenceScattering(medium, lighting, kTolerance, progress);
+  deltaScale_ = deltaScaleOf(lighting, medium);
+  if (lighting.hasIndirectLight() || medium.emits()) scattered_ = referenceScattering(medium, lighting, kTolerance, progress);
 }
 
 glm::dvec3 LightMarch::transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const {
   const MarchedRay ray{
       .origin = position, .direction = direction, .worldLength = glm::length(toWorld_ * direction)};
-  return glm::exp(-marchDepth(field_, ray, end) * lighting_.tint * narrowing_);
+  return glm::exp(-marchDepth(field_, ray, end) * lighting_.tint * deltaScale_);
 }
 
 glm::dvec3 LightMarch::scatteredFrom(std::size_t i, glm::dvec3 position, glm::dvec3 toEye) const {

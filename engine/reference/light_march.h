@@ -23,7 +23,7 @@ class LightMarch {
   /// Scattered radiance for albedo 1. `position` is in index space, `toEye` a unit vector in world space.
   glm::dvec3 scattered(glm::dvec3 position, glm::dvec3 toEye) const;
   /// Factor of the extinction of light by colour, as what is scattered forwards goes on (splitPhase).
-  const glm::dvec3& narrowing() const { return narrowing_; }
+  const glm::dvec3& deltaScale() const { return deltaScale_; }
 
  private:
   glm::dvec3 transmittance(glm::dvec3 position, glm::dvec3 direction, double end) const;
@@ -33,7 +33,7 @@ class LightMarch {
   const glm::dmat3 toWorld_;
   const Lighting lighting_;
   std::vector<RaySource> sources_;
-  glm::dvec3 narrowing_{1.0};
+  glm::dvec3 deltaScale_{1.0};
   std::optional<ScatteredField> scattered_;
 };
 

@@ -282,8 +282,8 @@ double March::absorb(double thickness) {
 
 /// The light of colour 1 from what was absorbed since the transmittance was `before`: with lights, some of what is scattered goes on.
 glm::dvec3 March::lightOver(double before) const {
-  if (!light_ || light_->narrowing() == glm::dvec3(1.0)) return glm::dvec3(before - transmittance_);
-  const glm::dvec3 n = light_->narrowing();
+  if (!light_ || light_->deltaScale() == glm::dvec3(1.0)) return glm::dvec3(before - transmittance_);
+  const glm::dvec3 n = light_->deltaScale();
   return (glm::pow(glm::dvec3(before), n) - glm::pow(glm::dvec3(transmittance_), n)) / n;
 }
 

@@ -80,7 +80,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
       detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
   if (lighting_) {
     forward_ = splitPhase(*lighting_).forward;
-    if (forward_ > 0.0) narrowing_ -= forward_ * ScatteringMedium(volume, classification).meanAlbedo();
+    if (forward_ > 0.0) deltaScale_ = deltaScaleOf(*lighting_, ScatteringMedium(volume, classification));
     for (const Light& light : lighting_->lights) lights_.push_back(lightSource(light, volume.indexToWorld));
   }
   // Levels come in slice by slice, which may be complete only after all blocks are small.

@@ -118,7 +118,7 @@ class ReferenceGather {
   std::vector<RaySource> lights_;  ///< the lights' places in index space
   std::optional<ScatteredField> scattered_;
   double forward_ = 0.0;       ///< of lighting_: PhaseSplit
-  glm::dvec3 narrowing_{1.0};  ///< mean factor of the extinction that this makes towards lights
+  glm::dvec3 deltaScale_{1.0};  ///< mean factor of the extinction that this makes towards lights
   glm::ivec2 size_;
   glm::dvec2 middle_;  ///< of the image, pixels
   PixelRays rays_;

@@ -194,7 +194,7 @@ glm::dvec3 ReferenceGather::leaving(const Stretch& stretch, glm::dvec3 depth, gl
     sum = scattered_->at(stretch.position + stretch.scatteredOffset, toEye);
     for (int c = 0; c < 3; ++c) sum[c] *= meanTransmittance(depth[c]);
   }
-  const glm::dvec3 tints = lighting_->tint * narrowing_;
+  const glm::dvec3 tints = lighting_->tint * deltaScale_;
   for (std::size_t l = 0; l < lights_.size(); ++l) {
     const Light& light = lighting_->lights[l];
     const glm::dvec3 apart = light.atInfinity ? light.place : linear_ * (lights_[l].place - stretch.position);

@@ -57,12 +57,12 @@ glm::dvec3 ReferenceLight::lightReaching(const Block& block, glm::dvec3 toEye, g
   const double e = own(toEye);
   const double cosine = glm::dot(glm::normalize(toWorld_ * toEye), glm::normalize(toWorld_ * direction));
   const bool isUnknown = unsaturated == 0.0 || depth >= 0.9999 * kOpaqueDepth;
-  if ((lighting_.isTinted() || inputs_.narrowing != glm::dvec3(1.0)) && isUnknown) return glm::dvec3(0.0);
+  if ((lighting_.isTinted() || inputs_.deltaScale != glm::dvec3(1.0)) && isUnknown) return glm::dvec3(0.0);
   glm::dvec3 part;
   for (int c = 0; c < 3; ++c) {
     // The integral of exp(-e t) times exp(-l t), or where the light comes from the other side exp(-l (1 -
     // t)), over t from 0 to 1.
-    const double tint = lighting_.tint[c] * inputs_.narrowing[c], l = tint * own(direction);
+    const double tint = lighting_.tint[c] * inputs_.deltaScale[c], l = tint * own(direction);
     const double sameSide = meanOver(e + l);
     const double otherSide = std::exp(-std::min(e, l)) * meanOver(std::abs(e - l));
     part[c] = std::exp(-tint * inFront) *

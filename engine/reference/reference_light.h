@@ -29,7 +29,7 @@ struct LightInputs {
   /// The codes of scalars whose gradients are the normals of surfaces; null: those of extinctions are.
   const TransferTable* scalars = nullptr;
   const ScatteredField* scattered = nullptr;  ///< null without such light
-  glm::dvec3 narrowing{1.0};                  ///< mean factor of the extinction of light, as what is scattered forwards goes on
+  glm::dvec3 deltaScale{1.0};                 ///< mean factor of the extinction of light, as what is scattered forwards goes on
 };
 
 class ReferenceLight {

@@ -38,12 +38,12 @@ class Transport {
       : medium_(medium),
         grid_(medium.grid()),
         split_(splitPhase(lighting)),
-        narrowing_(lighting.tint * (1.0 - split_.forward * medium.meanAlbedo())),
+        depthScale_(lighting.tint * deltaScaleOf(lighting, medium)),
         directExtinction_(medium.directExtinction()),
         directions_(sphereQuadrature(medium.indexToWorld())),
         direct_(grid_.count()),
         light_(grid_.count()),
-        sky_(skyOf(lighting)) {
+        sky_(surroundingRadiances(lighting, directions_, medium.indexToWorld())) {
     const std::vector<double> surfaces = medium.surfaceShares();
     for (std::size_t i = 0; i < grid_.count(); ++i) {
       const ScatteringMedium::Cell& cell = medium.cells()[i];
@@ -82,23 +82,6 @@ class Transport {
   const std::vector<Moments>& direct() const { return direct_; }
 
  private:
-  /// Of the sky's radiance from each direction of the table, with the mean of the sky.
-  std::vector<glm::dvec3> skyOf(const Lighting& lighting) const {
-    std::vector<glm::dvec3> sky(directions_.size(), lighting.ambient);
-    if (!lighting.environment) return sky;
-    const auto around = directionRadiances(*lighting.environment, DirectionSet::Directions26, medium_.indexToWorld());
-    const auto shares = directionShares(DirectionSet::Directions26, medium_.indexToWorld());
-    glm::dvec3 mean(0.0), ofRule(0.0);
-    for (std::size_t i = 0; i < sky.size(); ++i) {
-      mean += shares[i] * around[i];
-      ofRule += directions_[i].weight * around[i];
-    }
-    for (std::size_t i = 0; i < sky.size(); ++i)
-      for (int c = 0; c < 3; ++c)
-        if (ofRule[c] > 0.0) sky[sky.size() - 1 - i][c] += around[i][c] * mean[c] / ofRule[c];
-    return sky;
-  }
-
   double directExtinctionAt(glm::ivec3 cell) const {
     const CellGrid& grid = medium_.directGrid();
     return isInside(cell, grid.cells) ? double(directExtinction_[grid.index(cell)]) : 0.0;
@@ -139,7 +122,7 @@ class Transport {
     const glm::dvec3 way = toWorld * toLight;
     const double edge = std::cbrt(std::abs(glm::determinant(toWorld)));
     const double distance2 = source.atInfinity ? 1.0 : std::max(glm::dot(way, way), kNearestLight2 * edge * edge);
-    const glm::dvec3 through = glm::exp(-glm::length(toWorld * step) * sum * narrowing_);
+    const glm::dvec3 through = glm::exp(-glm::length(toWorld * step) * sum * depthScale_);
     return {light.intensity / (4.0 * std::numbers::pi * distance2) * light.color * through, -way / std::max(glm::length(way), 1e-15)};
   }
 
@@ -204,7 +187,7 @@ class Transport {
   const ScatteringMedium& medium_;
   const CellGrid grid_;
   const PhaseSplit split_;
-  const glm::dvec3 narrowing_;
+  const glm::dvec3 depthScale_;
   const std::vector<float> directExtinction_;
   const std::vector<QuadratureDirection> directions_;
   std::vector<glm::dvec3> extinction_, scattering_;

@@ -64,7 +64,7 @@ class SplatSummer {
         table_(tableFor(camera)),
         codes_(codesFor()) {
     if (settings.lighting) forward_ = splitPhase(*settings.lighting).forward;
-    if (forward_ > 0.0) narrowing_ -= forward_ * ScatteringMedium(volume, classification).meanAlbedo();
+    if (forward_ > 0.0) deltaScale_ = deltaScaleOf(*settings.lighting, ScatteringMedium(volume, classification));
     light_ = lightFor();
     FV_CHECK_EQ(inputs.extinction.size(), volume.voxelCount());
   }
@@ -101,7 +101,7 @@ class SplatSummer {
   const std::optional<TransferTable> codes_;     ///< of scalars that are classified after interpolation
   std::unique_ptr<ReferenceLight> light_;        ///< null without lighting
   double forward_ = 0.0;                         ///< PhaseSplit
-  glm::dvec3 narrowing_{1.0};                    ///< mean factor of the extinction of light that this makes
+  glm::dvec3 deltaScale_{1.0};                   ///< mean factor of the extinction of light that this makes
 };
 
 std::unique_ptr<ReferenceDepth> SplatSummer::tableFor(const Camera& camera) const {
@@ -127,7 +127,7 @@ std::unique_ptr<ReferenceLight> SplatSummer::lightFor() const {
                                                       .emission = inputs_.emission,
                                                       .scalars = codes_ ? &*codes_ : nullptr,
                                                       .scattered = inputs_.scattered,
-                                                      .narrowing = narrowing_},
+                                                      .deltaScale = deltaScale_},
                                           settings_);
 }
 
@@ -218,14 +218,14 @@ void SplatSummer::add(const Block& block, std::vector<SplatSums>& image) const {
   const double leaving = ofKernel ? this->leaving(block, *splat, sigma, depth.centre)
                                   : projector_.leaving(*splat, sigma, layers);
   const glm::dvec3 radiance = light_ ? albedo * light_->scattered(block, splat->toEye) : albedo;
-  glm::dvec3 goesOn(1.0);  // what is scattered forwards goes on to the eye
+  glm::dvec3 deltaFactor(1.0);  // what is scattered forwards goes on to the eye
   for (int c = 0; c < 3 && forward_ > 0.0; ++c)
-    goesOn[c] = projector_.leaving(*splat, (1.0 - forward_ * albedo[c]) * sigma, layers) / projector_.leaving(*splat, sigma, layers) *
-                std::exp((1.0 - narrowing_[c]) * depth.centre);
+    deltaFactor[c] = projector_.leaving(*splat, (1.0 - forward_ * albedo[c]) * sigma, layers) / projector_.leaving(*splat, sigma, layers) *
+                     std::exp((1.0 - deltaScale_[c]) * depth.centre);
   const auto addTo = [&](const CoveredPixel& pixel) {
     SplatSums& sums = image[pixel.index];
     const double seen = leaving * std::exp(-depth.at(pixel)) * pixel.omega, energy = sigma * seen;
-    sums.color += goesOn * (energy * radiance + seen * emission);
+    sums.color += deltaFactor * (energy * radiance + seen * emission);
     sums.energy += energy;
     sums.depth += sigma * pixel.omega;
     sums.distance += energy * splat->distance;

@@ -75,7 +75,7 @@ struct Lighting {
   /// Whether a frame needs the attenuation table. For Auto this only holds after it has been resolved.
   bool readsTable() const { return attenuation == LightAttenuation::Table && !lights.empty(); }
   /// Whether light that was scattered before, or comes from the surroundings, reaches the medium; without its emission.
-  bool scattersAgain() const { return hasAmbient() || (scattering != 1 && !lights.empty()); }
+  bool hasIndirectLight() const { return hasAmbient() || (scattering != 1 && !lights.empty()); }
   bool isTinted() const { return tint != glm::dvec3(1.0); }
   bool operator==(const Lighting&) const = default;
 };

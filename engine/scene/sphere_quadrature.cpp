@@ -5,7 +5,6 @@
 #include <cmath>
 
 #include "engine/scene/directions.h"
-#include "engine/scene/lighting.h"
 
 namespace freevoxels {
 
@@ -87,6 +86,22 @@ std::vector<QuadratureDirection> sphereQuadrature(const glm::dmat4& indexToWorld
   }
   if (!cubic) correctWeights(directions);
   return directions;
+}
+
+std::vector<glm::dvec3> surroundingRadiances(const Lighting& lighting, std::span<const QuadratureDirection> directions,
+                                             const glm::dmat4& indexToWorld) {
+  std::vector<glm::dvec3> sky(directions.size(), lighting.ambient);
+  if (!lighting.environment) return sky;
+  const std::vector<glm::dvec3> around = directionRadiances(*lighting.environment, kSet, indexToWorld);
+  const std::vector<double> shares = directionShares(kSet, indexToWorld);
+  glm::dvec3 mean(0.0), ofRule(0.0);
+  for (std::size_t i = 0; i < sky.size(); ++i) {
+    mean += shares[i] * around[i];
+    ofRule += directions[i].weight * around[i];
+  }
+  for (std::size_t i = 0; i < sky.size(); ++i)  // light from a direction travels along the opposite one
+    sky[sky.size() - 1 - i] += around[i] * glm::mix(mean / ofRule, glm::dvec3(1.0), glm::equal(ofRule, glm::dvec3(0.0)));
+  return sky;
 }
 
 }  // namespace freevoxels

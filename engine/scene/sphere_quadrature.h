@@ -2,7 +2,10 @@
 // The 26 directions of Subr et al. 2007, Section 3.1, as a quadrature of the sphere.
 
 #include <glm/glm.hpp>
+#include <span>
 #include <vector>
+
+#include "engine/scene/lighting.h"
 
 namespace freevoxels {
 
@@ -17,5 +20,9 @@ struct QuadratureDirection {
 /// polynomials of degree 7 exactly. For other voxels they are the solid angles that the directions represent (directionShares), with the
 /// least relative changes that make the rule exact for polynomials of degree 3; without these changes if a weight would not be positive.
 std::vector<QuadratureDirection> sphereQuadrature(const glm::dmat4& indexToWorld);
+
+/// The radiance of ambient light and environment that travels along each direction. Its mean by the weights is that over the sphere.
+std::vector<glm::dvec3> surroundingRadiances(const Lighting& lighting, std::span<const QuadratureDirection> directions,
+                                             const glm::dmat4& indexToWorld);
 
 }  // namespace freevoxels

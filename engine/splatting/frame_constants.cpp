@@ -163,7 +163,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   frame.eye = eyeSource(camera, volume.indexToWorld);
   frame.eyeInside = isInside(frame.eye, volume.layout.dimensions);
   frame.lit = settings.lighting.has_value();
-  frame.setup.lighting.narrowing = glm::vec3(1.0f);
+  frame.setup.lighting.deltaScale = glm::vec3(1.0f);
   frame.tinted = frame.lit && (settings.lighting->isTinted() || splitPhase(*settings.lighting).forward > 0.0);
   frame.lightsReadTable = frame.lit && settings.lighting->readsTable();
 
@@ -190,11 +190,10 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
 
 void setScattered(FrameConstants& constants, const Lighting& lighting, const ScatteringSolver& solved) {
   shader::FrameLighting& onDevice = constants.setup.lighting;
-  const PhaseSplit split = splitPhase(lighting);
   onDevice.scattered = solved.onDevice();
-  onDevice.forward = float(split.forward);
-  onDevice.narrowing = glm::vec3(1.0 - split.forward * solved.medium().meanAlbedo());
-  onDevice.tint *= onDevice.narrowing;
+  onDevice.forward = float(splitPhase(lighting).forward);
+  onDevice.deltaScale = solved.deltaScale();
+  onDevice.tint *= onDevice.deltaScale;
   constants.scatteredRadiance = solved.brightest();
 }
 

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <limits>
 
-#include "engine/scene/lighting.h"
-
 namespace freevoxels {
 
 namespace {
@@ -56,14 +54,20 @@ bool isGreyColor(const glm::dvec3& color) {
 
 }  // namespace
 
+CellGrid ScatteringMedium::directGridOf(glm::ivec3 dimensions) {
+  return {dimensions, edgeFor(dimensions, kMaxDirectCells, 1)};
+}
+
+CellGrid ScatteringMedium::gridOf(glm::ivec3 dimensions) {
+  return {dimensions, edgeFor(dimensions, kMaxScatteringCells, directGridOf(dimensions).edge)};
+}
+
 ScatteringMedium::ScatteringMedium(glm::ivec3 dimensions, const glm::dmat4& indexToWorld)
     : indexToWorld_(indexToWorld),
-      directGrid_(dimensions, edgeFor(dimensions, kMaxDirectCells, 1)),
-      cells_(),
-      direct_(directGrid_.count(), 0.0) {
-  grid_ = CellGrid(dimensions, edgeFor(dimensions, kMaxScatteringCells, directGrid_.edge));
-  cells_.resize(grid_.count());
-}
+      grid_(gridOf(dimensions)),
+      directGrid_(directGridOf(dimensions)),
+      cells_(grid_.count()),
+      direct_(directGrid_.count(), 0.0) {}
 
 ScatteringMedium::ScatteringMedium(const Volume& volume, const Classification& classification)
     : ScatteringMedium(volume.dimensions, volume.indexToWorld) {
@@ -102,7 +106,7 @@ void ScatteringMedium::add(const Volume& part, glm::ivec3 first, const Classific
 }
 
 ScatteringMedium ScatteringMedium::coarser() const {
-  ScatteringMedium result = *this;
+  ScatteringMedium result(glm::ivec3(1), indexToWorld_);
   result.directGrid_ = grid_;
   result.grid_.cells = (grid_.cells + 1) / 2;
   result.grid_.edge = 2 * grid_.edge;
@@ -152,6 +156,11 @@ glm::dvec3 ScatteringMedium::meanAlbedo() const {
     scattering += cell.scattering;
   }
   return extinction > 0.0 ? scattering / extinction : glm::dvec3(0.0);
+}
+
+glm::dvec3 deltaScaleOf(const Lighting& lighting, const ScatteringMedium& medium) {
+  const double forward = splitPhase(lighting).forward;
+  return forward > 0.0 ? 1.0 - forward * medium.meanAlbedo() : glm::dvec3(1.0);
 }
 
 bool ScatteringMedium::emits() const {

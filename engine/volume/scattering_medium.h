@@ -6,6 +6,7 @@
 #include <span>
 #include <vector>
 
+#include "engine/scene/lighting.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 
@@ -32,7 +33,12 @@ struct CellGrid {
 /// What cells hold on average: sums that are filled part by part, so that a volume need not be in memory as a whole.
 class ScatteringMedium {
  public:
-  /// Cells of the volume, so small that their number is at most kMaxScatteringCells, and direct cells that divide their edges.
+  /// The cells of a volume of this size: as small as kMaxScatteringCells allows. The direct cells, with kMaxDirectCells, divide their
+  /// edges.
+  static CellGrid directGridOf(glm::ivec3 dimensions);
+  static CellGrid gridOf(glm::ivec3 dimensions);
+
+  /// Empty cells.
   ScatteringMedium(glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
   /// Of a whole volume.
   ScatteringMedium(const Volume& volume, const Classification& classification);
@@ -70,5 +76,8 @@ class ScatteringMedium {
   std::vector<Cell> cells_;
   std::vector<double> direct_;
 };
+
+/// The factor of the medium's mean extinction by delta scaling (PhaseSplit), by colour: 1 where nothing is scattered forwards.
+glm::dvec3 deltaScaleOf(const Lighting& lighting, const ScatteringMedium& medium);
 
 }  // namespace freevoxels

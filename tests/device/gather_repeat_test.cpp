@@ -60,7 +60,7 @@ class GatherRepeatTest : public GatherTest {
     inside.position = glm::dvec3(volume.indexToWorld * glm::dvec4(glm::dvec3(volume.dimensions) * glm::dvec3(0.5, 0.6, 0.9), 1.0));
     inside.lookAt = glm::dvec3(volume.indexToWorld * glm::dvec4(glm::dvec3(volume.dimensions) * glm::dvec3(0.4, 0.5, 0.3), 1.0));
     inside.verticalFov = 70.0;
-    const Lighting sun{.lights = {{.place = {1.0, 0.7, 0.2}}}, .ambient = glm::dvec3(0.2), .surface = 0.5};
+    const Lighting sun{.lights = {{.place = {1.0, 0.7, 0.2}}}, .ambient = glm::dvec3(0.2), .surface = 0.5, .scattering = kAllOrders};
     Lighting many = sun;
     many.surface = 0.0;
     for (int i = 0; i < (crowded ? 4 : 1); ++i) many.lights.push_back({.place = {0.3 * i, 1.0, -0.5}, .atInfinity = i % 2 == 0});

@@ -94,7 +94,6 @@ TEST_F(MultipleScatteringTest, AThickWhiteCloudTakesTheWorkOfTwelveFineSets) {
     std::vector<StageTime> times;
     solver.solve({.lights = {{.place = {1.0, 0.4, 0.2}}}, .scattering = kAllOrders}, times, {});
     EXPECT_LE(solver.facts().residual, kScatteringTolerance);
-    std::cout << "scale " << scale << ": " << solver.facts().sets << " sets, work " << solver.facts().work << '\n';
     EXPECT_LE(solver.facts().work, 12.0) << scale;
   }
 }
@@ -162,7 +161,6 @@ TEST_P(PathTracedImage, IsMatchedInBrightnessAndLooks) {
   const double flip = ldrFlip(scaled(image, 1.0f / brightest), scaled(truth, 1.0f / brightest)).mean();
   RecordProperty("brightness", std::to_string(ratio));
   RecordProperty("flip", std::to_string(flip));
-  std::cout << name << ": brightness " << ratio << ", LDR-FLIP " << flip << '\n';
   EXPECT_LT(flip, wanted.flip);
   EXPECT_GT(ratio, wanted.least);
   EXPECT_LT(ratio, wanted.most);
@@ -218,7 +216,6 @@ TEST_F(MultipleScatteringTest, SmokeIsLitByTheFireInItAsByAPathTracer) {
   for (glm::vec4& pixel : image.pixels)
     pixel = glm::vec4(glm::vec3(glm::dot(glm::vec3(pixel), glm::vec3(0.2126f, 0.7152f, 0.0722f))), 1.0f);
   const double ratio = meanOf(image) / meanOf(truth), flip = ldrFlip(image, scaled(truth, 1.0f)).mean();
-  std::cout << "fire: brightness " << ratio << ", LDR-FLIP " << flip << '\n';
   EXPECT_LT(flip, 0.04);
   EXPECT_NEAR(ratio, 1.0, 0.03);
 }
