@@ -70,6 +70,10 @@ Json loadScene(const std::filesystem::path& file) {
   return sceneToJson(readScene(std::filesystem::absolute(file)), std::nullopt);
 }
 
+std::vector<std::string> sceneWarnings(const std::filesystem::path& file) {
+  return SceneFile(file).warnings();
+}
+
 void saveScene(const std::filesystem::path& file, const Json& keywords) {
   const KeywordOptions options({keywords}, {"input", "classification", "emission", "camera", "light", "method", "output", "scene"});
   options.scene.check();

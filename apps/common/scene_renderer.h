@@ -28,6 +28,8 @@ void saveImage(const std::string& file, const Image& image, const nlohmann::json
 
 /// A scene file as keywords, with absolute names of files. Fails with ErrorKind::Input.
 nlohmann::json loadScene(const std::filesystem::path& file);
+/// SceneFile::warnings().
+std::vector<std::string> sceneWarnings(const std::filesystem::path& file);
 /// Writes keywords as a scene file, with names of files relative to its folder.
 void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
 

@@ -20,6 +20,10 @@ void save(const std::filesystem::path& file, const Image& image, std::string_vie
   });
 }
 
+std::vector<std::string> sceneWarnings(const std::filesystem::path& file) {
+  return translated([&] { return freevoxels::sceneWarnings(file); });
+}
+
 std::string loadScene(const std::filesystem::path& file) {
   return translated([&] { return freevoxels::loadScene(file).dump(2, ' ', false, Json::error_handler_t::replace); });
 }

@@ -39,7 +39,9 @@ void save(const py::object& name, const py::object& image, const py::object& dep
 }
 
 py::object loadSceneFile(const py::object& file) {
-  return pythonOf(loadScene(pathOf(file)));
+  const std::filesystem::path path = pathOf(file);
+  for (const std::string& warning : sceneWarnings(path)) tellPython(warning, true);
+  return pythonOf(loadScene(path));
 }
 
 void saveSceneFile(const py::object& file, const py::kwargs& keywords) {

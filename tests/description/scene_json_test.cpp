@@ -101,6 +101,18 @@ TEST(SceneJson, FormerWordsOfTheMethodAreThoseOfNothingGiven) {
   EXPECT_EQ(readScene(folder / "s.json").method, MethodDescription{.lod = 2.0});
 }
 
+TEST(SceneJson, AKeyWithoutEffectOfAnEarlierVersionIsReadWithOneSentence) {
+  const TemporaryFolder folder;
+  writeBytes(folder / "s.json", R"({"light": {"scattering": 3, "scattering-scale": 0.4}})");
+  EXPECT_EQ(readScene(folder / "s.json").lighting.scattering, 3);
+  const std::vector<std::string> warnings = SceneFile(folder / "s.json").warnings();
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings.front().find("scattering-scale"), std::string::npos) << warnings.front();
+  writeBytes(folder / "t.json", R"({"light": {"scattering": "all"}})");
+  EXPECT_EQ(readScene(folder / "t.json").lighting.scattering, kAllOrders);
+  EXPECT_TRUE(SceneFile(folder / "t.json").warnings().empty());
+}
+
 TEST(SceneJson, TheTestsAboveHaveEveryField) {
   const TemporaryFolder folder;
   const SceneDescription a = everything(folder), b = others(folder);

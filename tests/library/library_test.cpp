@@ -94,6 +94,12 @@ TEST(Library, ScenesAreWrittenToFilesAndReadBack) {
   EXPECT_EQ(image.pixels, v1::Renderer(same, R"({"size": [48, 40], "fov": 30})").render().pixels);
   v1::save(folder.path() / "a.png", image, scene);
 
+  EXPECT_TRUE(v1::sceneWarnings(file).empty());
+  test::writeBytes(file, R"({"light": {"scattering-scale": 0.4}})");
+  EXPECT_EQ(v1::loadScene(file).find("scattering-scale"), std::string::npos);
+  ASSERT_EQ(v1::sceneWarnings(file).size(), 1u);
+  EXPECT_NE(v1::sceneWarnings(file).front().find("scattering-scale"), std::string::npos);
+
   test::writeBytes(file, R"({"camera": {"fob": 3}})");
   expectError(v1::ErrorKind::Input, R"(no key "camera.fob"; did you mean "camera.fov"?)", [&] { v1::loadScene(file); });
   expectError(v1::ErrorKind::Usage, "there is no volume to open", [] { v1::Volume::open(""); }, {"volume"});

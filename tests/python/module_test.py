@@ -208,6 +208,15 @@ class FilesTest(unittest.TestCase):
         renderer = freevoxels.Renderer(freevoxels.Volume.open(**resolved), **resolved)
         np.testing.assert_array_equal(renderer.render(), freevoxels.render(**loaded))
 
+    def test_keys_of_earlier_versions_are_read_with_a_warning(self):
+        file = self.folder / "scene.json"
+        file.write_text('{"light": {"scattering": 2, "scattering-scale": 0.4}}')
+        with self.assertLogs("freevoxels", "WARNING") as logs:
+            self.assertEqual(freevoxels.load_scene(file), {"light": {"scattering": 2}})
+        self.assertIn("scattering-scale", logs.output[0])
+        with self.assertLogs("freevoxels", "WARNING"):
+            freevoxels.Renderer(freevoxels.Volume.open("procedural:cloud", resolution=16)).render(scene=file, size=16)
+
     def test_wrong_scenes_are_named(self):
         file = self.folder / "scene.json"
         file.write_text('{"camera": {"fob": 3}}')

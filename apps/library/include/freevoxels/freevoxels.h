@@ -281,6 +281,8 @@ FREEVOXELS_API void merge(const std::vector<std::string>& parts, const std::vect
 /// Reads a scene file, which the command line, the viewer or saveScene() wrote, or a person: the text of a scene, with absolute
 /// names of files. Fails with ErrorKind::Input and a sentence that names the file and the key.
 FREEVOXELS_API std::string loadScene(const std::filesystem::path& file);
+/// What a user should know of a scene file: which keys are of an earlier version and have no effect.
+FREEVOXELS_API std::vector<std::string> sceneWarnings(const std::filesystem::path& file);
 /// Writes a scene as a file for the command line and the viewer, with names of files relative to its folder, atomically.
 FREEVOXELS_API void saveScene(const std::filesystem::path& file, std::string_view scene);
 
