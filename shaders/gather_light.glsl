@@ -2,7 +2,7 @@
 #ifndef GATHER_LIGHT_GLSL
 #define GATHER_LIGHT_GLSL
 #include "gather_march.glsl"
-#include "surface_scattering.glsl"
+#include "phase_function.glsl"
 #define SCATTERED_TEXEL(i) texelFetch(scatteredTexels, i)
 #include "scattered_light.glsl"
 

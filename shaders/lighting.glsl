@@ -9,7 +9,6 @@
 #include "phase_function.glsl"
 #include "ray_lookup.glsl"
 #include "self_attenuation.glsl"
-#include "surface_scattering.glsl"
 
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer ScatteredTexels { vec4 values[]; };
 #define SCATTERED_TEXEL(i) ScatteredTexels(frame.lighting.scattered.texels).values[i]

@@ -39,7 +39,7 @@ constexpr int kQuickQualityImage = 96, kWholeQualityImage = 160, kLargeQualityIm
 /// Least resolution with goals: in coarser volumes structures have the size of a voxel.
 constexpr int kMinResolutionWithGoals = kLarge;
 constexpr int kQuickLightImage = 48;
-constexpr glm::ivec2 kGatherLightImage{40, 32};
+constexpr glm::ivec2 kGatherLightImage{24, 20}, kGatherScalarLightImage{16, 12};
 constexpr int kQuickSky = 24;  ///< voxels along an edge for skies, for which the oracle is slow
 constexpr int kDetailResolution = kMedium;
 constexpr int kTurntableResolution = kMedium, kTurntableFrames = 36, kTurntableImage = 128;
@@ -174,6 +174,11 @@ void addLight(std::vector<SectionJob>& jobs, const Device& device, bool quick) {
   jobs.push_back(
       {"emission of fire", [=, &device] { return emissionChecks(device, resolution, quick ? kQuickLightImage : kQuickQualityImage); }});
   jobs.push_back({"gather with lights", [&device] { return gatherLightChecks(deviceGather(device), kGatherLightImage); }});
+  jobs.push_back(
+      {"gather with light of all orders", [&device] { return gatherScatteringChecks(deviceGather(device), kGatherLightImage); }});
+  jobs.push_back(
+      {"gather of scalars with lights", [&device] { return gatherScalarLightChecks(deviceGather(device), kGatherScalarLightImage); }});
+  jobs.push_back({"gather of surfaces", [&device] { return gatherSurfaceChecks(deviceGather(device)); }});
   jobs.push_back({"gather with lights and emission", [&device] { return gatherEmissionChecks(deviceGather(device), kGatherLightImage); }});
   jobs.push_back({"shadows", [=, &device] { return shadowChecks(device, resolution); }});
 }

@@ -8,7 +8,6 @@
 
 #include "engine/core/error.h"
 #include "engine/octree/hierarchy_layout.h"
-#include "engine/volume/scattering_medium.h"
 #include "shaders/gather_interface.h"
 
 namespace freevoxels {
@@ -69,20 +68,13 @@ GatherBlocks referenceGatherBlocks(const LevelData& medium, int level, glm::ivec
 }
 
 ReferenceGather::ReferenceGather(const Volume& volume, const Classification& classification, const Camera& camera,
-                                 const FrameSettings& settings, std::optional<ScatteredField> scattered)
+                                 const FrameSettings& settings)
     : volume_(volume),
-      lighting_(settings.lighting),
-      scattered_(std::move(scattered)),
       size_(settings.size),
       middle_(0.5 * glm::dvec2(settings.size)),
       rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
       linear_(volume.indexToWorld),
       detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
-  if (lighting_) {
-    forward_ = splitPhase(*lighting_).forward;
-    if (forward_ > 0.0) deltaScale_ = deltaScaleOf(*lighting_, ScatteringMedium(volume, classification));
-    for (const Light& light : lighting_->lights) lights_.push_back(lightSource(light, volume.indexToWorld));
-  }
   // Levels come in slice by slice, which may be complete only after all blocks are small.
   if (!rays_.orthographic || detail_.coarsestShare < 1.0) detail_.finest = std::max(detail_.finest - 1, 0);
   const Ray middle = rayThrough(glm::dvec2(0.0));
@@ -175,24 +167,14 @@ glm::dvec4 ReferenceGather::blockAt(const Ray& ray, const Slab& slab, int slice,
   return medium;
 }
 
-/// The bilinear emission on a slice, where that is not part of the source term.
-glm::dvec3 ReferenceGather::emissionAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const {
-  glm::dvec3 emission(0.0);
-  if (blocks.emission.empty()) return emission;
-  forCorners(slab.position(ray, slice), slab.axis, slice, blocks.dimensions, [&](std::size_t, double weight, glm::ivec3 block) {
-    emission += weight * blocks.emission[indexOf(block, blocks.dimensions)];
-  });
-  return emission;
-}
-
-void ReferenceGather::marchBlocks(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab,
+void ReferenceGather::marchBlocks(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab,
                                   const GatherBlocks& blocks) const {
   for (int number = 0; number < slab.count; ++number) {
     const int slice = slab.slice(number);
     const double part = partOfTent(slab.ahead(ray, slice));
     if (part <= 0.0 || slice >= blocks.dimensions[slab.axis]) continue;
     const glm::dvec4 medium = blockAt(ray, slab, slice, blocks);
-    addPart(sums, transmittance.alpha, medium, part * slab.layer(ray), slab.distance(ray, slice));
+    addPart(sums, transmittance, medium, part * slab.layer(ray), slab.distance(ray, slice));
   }
 }
 
@@ -202,9 +184,17 @@ std::optional<double> ReferenceGather::scalarOf(glm::ivec3 voxel) const {
   return double(code - 1) * shader::kTransferIntervals / shader::kScalarCodes;
 }
 
+/// The scalar between the four voxels around a ray's point on a slice, and their share that has data.
 ReferenceGather::Scalar ReferenceGather::scalarAt(const Ray& ray, const Slab& slab, int slice) const {
-  const auto [value, coverage] = scalarNear(ray.origin + slab.distance(ray, slice) * ray.direction);
-  return {.coverage = coverage, .value = value};
+  Scalar scalar;
+  forCorners(slab.position(ray, slice), slab.axis, slice, volume_.dimensions, [&](std::size_t, double weight, glm::ivec3 voxel) {
+    const std::optional<double> found = scalarOf(voxel);
+    if (!found) return;
+    scalar.coverage += weight;
+    scalar.value += weight * *found;
+  });
+  if (scalar.coverage > 0.0) scalar.value /= scalar.coverage;
+  return scalar;
 }
 
 glm::dvec4 ReferenceGather::mediumAt(double scalar) const {
@@ -248,51 +238,41 @@ ReferenceGather::ScalarStretch ReferenceGather::scalarStretch(const Ray& ray, co
 
 /// Marches from slice to slice in two halves: the scalar is linear up to the middle, and from there on. Extinction falls with the share of
 /// voxels with data, which is linear in both halves.
-void ReferenceGather::marchScalars(GatherSums& sums, Transmittance& transmittance, const Ray& ray, const Slab& slab,
-                                   const GatherLight* light) const {
+void ReferenceGather::marchScalars(GatherSums& sums, double& transmittance, const Ray& ray, const Slab& slab) const {
   Scalar last;
-  std::optional<Arriving> lastArriving;
   for (int number = 0; number <= slab.count; ++number) {
     const ScalarStretch stretch = scalarStretch(ray, slab, number, last);
-    std::array<Stretch, 2> halves;
-    if (light != nullptr) halves = lightStretch(*light, ray, slab, stretch, transmittance.alpha, lastArriving);
     for (std::size_t half = 0; half < 2; ++half) {
       const double inFront = std::clamp(slab.ahead(ray, stretch.slice) - (half == 0 ? 0.5 : 0.0), 0.0, 0.5);  // of the half, in slices
       const double length = inFront * slab.layer(ray) * stretch.coverages[half];
-      const double distance = slab.distance(ray, stretch.slice + slab.sign * (half == 0 ? -0.75 : -0.25));
-      if (light != nullptr)
-        addLit(sums, transmittance, stretch.means[half], length, distance, halves[half], ray);
-      else
-        addPart(sums, transmittance.alpha, stretch.means[half], length, distance);
+      addPart(sums, transmittance, stretch.means[half], length,
+              slab.distance(ray, stretch.slice + slab.sign * (half == 0 ? -0.75 : -0.25)));
     }
     last = stretch.end;
   }
 }
 
-GatherSums ReferenceGather::sumsAt(glm::dvec2 position, std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const {
+GatherSums ReferenceGather::sumsAt(glm::dvec2 position, std::span<const GatherBlocks> blocks) const {
   const Ray ray = rayThrough(position);
   const int axis = axisOf(position, ray);
   GatherSums sums;
-  Transmittance transmittance;
+  double transmittance = 1.0;
   for (int level = detail_.finest; level <= detail_.coarsest; ++level) {
     const Slab slab = slabOf(ray, axis, level);
-    const GatherLight* lit = lighting_ ? &light[std::size_t(level)] : nullptr;
     if (level == 0 && hasScalars())
-      marchScalars(sums, transmittance, ray, slab, lit);
-    else if (lit != nullptr)
-      marchLitBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)], *lit);
+      marchScalars(sums, transmittance, ray, slab);
     else
       marchBlocks(sums, transmittance, ray, slab, blocks[std::size_t(level)]);
   }
-  sums.energy = 1.0 - transmittance.alpha;
+  sums.energy = 1.0 - transmittance;
   return sums;
 }
 
-std::vector<GatherSums> ReferenceGather::samples(std::span<const GatherBlocks> blocks, std::span<const GatherLight> light) const {
+std::vector<GatherSums> ReferenceGather::samples(std::span<const GatherBlocks> blocks) const {
   std::vector<GatherSums> result(std::size_t(lattice_.samples.x) * std::size_t(lattice_.samples.y));
   tbb::parallel_for(0, lattice_.samples.y, [&](int y) {
     for (int x = 0; x < lattice_.samples.x; ++x)
-      result[std::size_t(x) + std::size_t(lattice_.samples.x) * std::size_t(y)] = sumsAt(positionOf({x, y}), blocks, light);
+      result[std::size_t(x) + std::size_t(lattice_.samples.x) * std::size_t(y)] = sumsAt(positionOf({x, y}), blocks);
   });
   return result;
 }

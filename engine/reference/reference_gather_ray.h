@@ -81,26 +81,4 @@ struct ReferenceGather::ScalarStretch {
   const Scalar& second() const { return end.coverage > 0.0 ? end : begin; }
 };
 
-/// What reaches a point of a ray.
-struct ReferenceGather::Arriving {
-  std::array<double, 4> depths{};  ///< optical depths towards the lights
-};
-
-/// What passes from a point of a ray to the eye.
-struct ReferenceGather::Transmittance {
-  double alpha = 1.0;
-  glm::dvec3 light{1.0};  ///< of light, of which what is scattered forwards goes on
-};
-
-/// A segment of a ray that is lit.
-struct ReferenceGather::Stretch {
-  Arriving begin, end;
-  glm::dvec3 position{0.0};        ///< of its middle, in index space
-  glm::dvec3 scatteredOffset{0.0};  ///< from there to where scattered light is looked up
-  double surface = 0.0;            ///< share of light that is reflected as by a surface
-  glm::dvec3 normal{0.0};          ///< of the surface, outwards, in world space
-  std::array<double, 4> outside{};  ///< depths towards the lights from outside of the surface
-  glm::dvec3 emission{0.0};         ///< radiance that leaves it, of what it emits, per world unit
-};
-
 }  // namespace freevoxels

@@ -30,9 +30,15 @@ GatherMaker deviceGather(const Device& device);
 /// both classified before and after interpolation.
 ReportSection gatherChecks(const GatherMaker& make, const ValidationScene& scene, glm::ivec2 size);
 
-/// Frames with lights at the samples, of a procedural volume that has no empty voxels: the light as it is stored, and the stages as above.
+/// Frames with lights at the samples, of smooth fog: depths towards the lights as they are stored, and the image against the oracle's.
 ReportSection gatherLightChecks(const GatherMaker& make, glm::ivec2 size);
+/// The same of scalars that are classified after interpolation.
+ReportSection gatherScalarLightChecks(const GatherMaker& make, glm::ivec2 size);
+/// A frame with light of all orders of scattering: the light as it is stored, and the image.
+ReportSection gatherScatteringChecks(const GatherMaker& make, glm::ivec2 size);
 /// The frames of gatherLightChecks() of voxels that emit light, too.
 ReportSection gatherEmissionChecks(const GatherMaker& make, glm::ivec2 size);
+/// Spheres whose surfaces reflect light: the image against its closed form, and gradients as they are stored.
+ReportSection gatherSurfaceChecks(const GatherMaker& make);
 
 }  // namespace freevoxels

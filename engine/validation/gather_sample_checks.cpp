@@ -48,7 +48,7 @@ std::string sampleText(glm::ivec2 samples, std::size_t i) {
 }
 
 std::vector<GatherSums> comparedSamples(const ReferenceGather& reference, const GatherStages& stages, double tolerance, glm::ivec2 size) {
-  std::vector<GatherSums> samples = reference.samples(stages.blocks, stages.light);
+  std::vector<GatherSums> samples = reference.samples(stages.blocks);
   if (stages.gathered.size() != samples.size()) return samples;
   std::array<double, kChannels.size()> largest;
   for (std::size_t c = 0; c < kChannels.size(); ++c) largest[c] = largestOf(kChannels[c], samples);
@@ -61,7 +61,7 @@ std::vector<GatherSums> comparedSamples(const ReferenceGather& reference, const 
     if (worst(i, samples[i]) <= tolerance) continue;
     const glm::ivec2 sample(int(i) % stages.lattice.samples.x, int(i) / stages.lattice.samples.x);
     for (const glm::dvec2 way : {glm::dvec2(1, 0), {-1, 0}, {0, 1}, {0, -1}}) {
-      const GatherSums beside = reference.sumsAt(reference.positionOf(sample) + kBeside * size.x * way, stages.blocks, stages.light);
+      const GatherSums beside = reference.sumsAt(reference.positionOf(sample) + kBeside * size.x * way, stages.blocks);
       if (worst(i, beside) <= tolerance) samples[i] = beside;
     }
   }

@@ -3,6 +3,7 @@
 #include <array>
 #include <cmath>
 
+#include "engine/validation/gather_checks.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/validation/sky_environment.h"
 #include "tests/device/gather_fixture.h"
@@ -95,49 +96,9 @@ TEST_F(GatherLightTest, LightOnOpaqueSkinComesNearerToTheOracleThanThatOfSplats)
   EXPECT_GE(quality[1], quality[0] + 5.0);
 }
 
-/// Opaque spheres, of scalars and of densities, of 4 pixels a voxel: the light that surfaces scatter depends on their normals alone,
-/// without steps from voxel to voxel. On the flank of the highlight 0.1 is a degree.
 TEST_F(GatherLightTest, LitSurfacesAreSmooth) {
-  constexpr int kEdge = 48;
-  constexpr double kRadius = 20.0;  // voxels
-  const glm::dvec3 middle(0.5 * (kEdge - 1));
-  const auto inside = [&](int x, int y, int z) { return kRadius - glm::length(glm::dvec3(x, y, z) - middle); };
-  Scene ofScalars{.volume = makeVolume(glm::ivec3(kEdge), cubeTransform(glm::ivec3(kEdge)), inside), .classification = {}};
-  ofScalars.classification.transferFunction = TransferFunction{
-      .opacity = {{-0.5f, 0.0f}, {0.5f, 0.99f}}, .color = {{0.0f, glm::vec3(1.0f)}}, .unitDistance = ofScalars.volume.voxelSize()};
-  ofScalars.classification.order = ClassificationOrder::Post;
-  Scene ofDensities{.volume = makeVolume(glm::ivec3(kEdge), cubeTransform(glm::ivec3(kEdge)),
-                                         [&](int x, int y, int z) { return std::clamp(0.5 + inside(x, y, z) / 3.0, 0.0, 1.0); }),
-                    .classification = {.albedo = glm::vec3(1.0f)}};
-  ofDensities.classification.densityScale = 3.0 / ofDensities.volume.voxelSize();
-  const glm::dvec3 toLight = glm::normalize(glm::dvec3(-1.0, 1.0, 1.0)), toEye(0.0, 0.0, 1.0);
-  for (const Scene* scene : {&ofScalars, &ofDensities}) {
-    SCOPED_TRACE(scene == &ofScalars ? "scalars" : "densities");
-    constexpr int kPixels = 192;
-    const Camera camera = alongZ(scene->volume, {kPixels, kPixels}, 4.0);
-    Renderer renderer(device(), scene->volume, scene->classification, {});
-    FrameSettings settings = gathering({kPixels, kPixels});
-    settings.lighting = Lighting{.lights = {{.place = toLight}}, .surface = 1.0};
-    settings.lighting->attenuation = LightAttenuation::Exact;
-    const Image image = renderer.render(camera, settings);
-    double largest = 0.0, sum = 0.0;
-    int count = 0;
-    for (int y = 0; y < kPixels; ++y)
-      for (int x = 0; x < kPixels; ++x) {
-        const glm::dvec2 place = (glm::dvec2(x, kPixels - 1 - y) - 0.5 * (kPixels - 1)) / (4.0 * kRadius);
-        if (glm::length(place) > 0.8) continue;
-        const glm::dvec3 normal(place, std::sqrt(1.0 - glm::dot(place, place)));
-        if (glm::dot(normal, toLight) < 0.3) continue;
-        const double expected = kDefaultIrradiance * 0.5 * surfaceScattering(normal, toLight, toEye);
-        const double ratio = image.pixels[std::size_t(x + kPixels * y)].g / expected;
-        largest = std::max(largest, std::abs(ratio - 1.0));
-        sum += std::abs(ratio - 1.0);
-        ++count;
-      }
-    EXPECT_GT(count, 5000);
-    EXPECT_LT(sum / count, scene == &ofScalars ? 0.015 : 0.025);
-    EXPECT_LT(largest, scene == &ofScalars ? 0.08 : 0.13);
-  }
+  for (const Check& check : gatherSurfaceChecks(deviceGather(device())).checks)
+    EXPECT_TRUE(check.passed()) << check.name << ": " << check.figure << " at " << check.where;
 }
 
 TEST_F(GatherLightTest, LightsOfAllKindsMatchTheOracle) {

@@ -186,7 +186,7 @@ TEST_F(GatherTest, CoarseBlocksAreWholeBeyondTheVolume) {
   const GatherStages stages = RendererStages(renderer).renderGatherStages(camera, settings);
   const ReferenceGather reference(box, classification, camera, settings);
   ASSERT_GE(reference.detail().coarsest, 4);
-  const std::vector<GatherSums> samples = reference.samples(stages.blocks, stages.light);
+  const std::vector<GatherSums> samples = reference.samples(stages.blocks);
   ASSERT_EQ(stages.gathered.size(), samples.size());
   for (std::size_t i = 0; i < samples.size(); ++i) EXPECT_NEAR(stages.gathered[i].energy, samples[i].energy, 1e-4) << "sample " << i;
   const Image image = reference.image(reference.smoothed(samples));
