@@ -147,7 +147,7 @@ void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel
   inBox.record(commands, shading);
   shader::GatherFrame gatherFrame = whole;
   inBox.describe(gatherFrame);  // what record() has made too
-  gatherFrame.scattered.perVoxel *= float(1 << cube.level);
+  gatherFrame.scattered.toCells *= float(1 << cube.level);
   gatherFrame.levels[0].dimensions = cubeLevel.outline().dimensions;
   gatherFrame.cube = {
       .first = box.first, .begin = cube.voxels.first, .end = cube.voxels.end, .corner = cube.seen.first, .extent = cube.seen.extent};

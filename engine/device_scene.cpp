@@ -58,9 +58,13 @@ void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, Fra
     }
     scattering_->solve(*settings.lighting, frameTimes, progress);
   }
+  prepareOwnLights(settings, scalars, constants, progress);
+  if (scatters_) setScattered(constants, *settings.lighting, *scattering_);
+}
+
+void DeviceScene::prepareOwnLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress) {
   if (!lights_) lights_.emplace(device);
   constants.setup.lighting = lights_->prepare(built.volume, tableSettings, settings, scalars, frameTimes, progress);
-  if (scatters_) setScattered(constants, *settings.lighting, *scattering_);
 }
 
 void DeviceScene::submit(Commands& commands, const Progress& progress) {

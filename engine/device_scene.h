@@ -46,6 +46,8 @@ class DeviceScene {
   const std::vector<double>& largestDepths() const { return largestDepths_; }
   /// Prepares the light of settings with lighting whose attenuation is not Auto: sets setup.lighting and scatteredRadiance of `constants`.
   void prepareLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress);
+  /// The same without scattered light.
+  void prepareOwnLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress);
   /// Of the last frame that was lit.
   const LightPass& lights() const { return *lights_; }
   /// Null if that has no such light.

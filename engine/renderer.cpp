@@ -7,6 +7,7 @@
 #include "engine/core/machine.h"
 #include "engine/core/parameter.h"
 #include "engine/cube_drawing.h"
+#include "engine/merged_drawing.h"
 #include "engine/renderer_state.h"
 
 namespace freevoxels {
@@ -40,6 +41,7 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
 Renderer::Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
                    const TableSettings& table, const Progress& progress)
     : device_(device), source_(std::move(source)), classification_(classification), table_(table) {
+  if (!source_) return;  // several
   isTooLarge_ = inCubes_ = exceeds(device, *source_, classification.emission.has_value());
   if (isTooLarge_) return;
   try {
@@ -54,6 +56,11 @@ Renderer::Renderer(const Device& device, const Volume& volume, const Classificat
                    const Progress& progress)
     : Renderer(device, std::make_shared<const VolumeInMemory>(std::shared_ptr<const Volume>(std::shared_ptr<const Volume>(), &volume)),
                classification, table, progress) {}
+
+Renderer::Renderer(const Device& device, std::vector<SceneVolume> volumes, const TableSettings& table, const Progress& progress)
+    : Renderer(device, volumes.size() == 1 ? volumes.front().source : nullptr, volumes.front().classification, table, progress) {
+  if (volumes.size() > 1) merged_ = std::make_unique<MergedDrawing>(device, std::move(volumes), table, progress);
+}
 
 Renderer::~Renderer() = default;
 
@@ -81,7 +88,7 @@ CubeDrawing& Renderer::cubes() {
 
 bool Renderer::surelyFits(const FrameSettings& settings) const {
   const Volume& outline = source_->outline();
-  if (CubeDrawing::whyNot(settings)) return true;
+  if (merged_ || CubeDrawing::whyNot(settings)) return true;
   constexpr std::uint64_t kMargin = 2;  // for what the least does not count: blocks and images
   return !inCubes_ && kMargin * leastGatherBytes(brickVoxels(*source_), outline.dimensions, outline.indexToWorld,
                                                  settings.lighting ? &*settings.lighting : nullptr, classification_.emission.has_value()) <=
@@ -129,6 +136,7 @@ auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& prog
 }
 
 Image Renderer::render(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
+  if (merged_) return downloadImage(device_, *merged_->draw(camera, settings, progress));
   checkCamera(camera);
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
@@ -150,6 +158,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
 
 std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                              const Progress& progress) {
+  if (merged_) return merged_->draw(camera, settings, progress);
   checkCamera(camera);
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
@@ -165,6 +174,7 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   FV_CHECK_EQ(wanted.isSorted(), false);
   FV_CHECK_LT(part.index, part.count);
   FV_CHECK_LE(part.count, kShares);
+  if (merged_) return merged_->shares(camera, wanted, part, progress);
   checkCamera(camera);
   FrameSettings settings = wanted;
   if (!settings.gathers()) settings.splats().cullThreshold = 0.0f;  // what hides a splat may be another part's
@@ -176,22 +186,25 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
 }
 
 VolumeMemory Renderer::memory() const {
+  if (merged_) return merged_->memory();
   return state_ ? state_->scene.memory() : cubes_ ? cubes_->memory() : VolumeMemory();
 }
 
 std::vector<StageTime> Renderer::buildTimings() const {
+  if (merged_) return merged_->buildTimings();
   return state_ ? state_->scene.buildTimes : std::vector<StageTime>();
 }
 
 std::vector<StageTime> Renderer::frameTimings() const {
+  if (merged_) return merged_->frameTimings();
   if (!state_) return cubes_ ? cubes_->timings() : std::vector<StageTime>();
   return builtInFrame_ ? timings() : state_->scene.frameTimes;
 }
 
 std::vector<StageTime> Renderer::timings() const {
-  if (!state_) return frameTimings();
-  std::vector<StageTime> times = state_->scene.buildTimes;
-  std::ranges::copy(state_->scene.frameTimes, std::back_inserter(times));
+  if (!state_ && !merged_) return frameTimings();
+  std::vector<StageTime> times = buildTimings();
+  std::ranges::copy(merged_ ? merged_->frameTimings() : state_->scene.frameTimes, std::back_inserter(times));
   return times;
 }
 
@@ -205,7 +218,10 @@ std::optional<std::uint64_t> Renderer::occupiedVoxelCount() const {
 }
 
 std::optional<ScatteringFacts> Renderer::scattering() const {
-  const ScatteringSolver* const solver = state_ ? state_->scene.scattered() : cubes_ ? cubes_->scattered() : nullptr;
+  const ScatteringSolver* const solver = merged_  ? merged_->scattered()
+                                         : state_ ? state_->scene.scattered()
+                                         : cubes_ ? cubes_->scattered()
+                                                  : nullptr;
   return solver != nullptr ? std::optional(solver->facts()) : std::nullopt;
 }
 

@@ -19,15 +19,18 @@
 #include "engine/splatting/shares.h"
 #include "engine/visibility/cut_counts.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/scene_volume.h"
 #include "engine/volume/volume_source.h"
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
 
 class CubeDrawing;
+class MergedDrawing;
 
-/// Draws the frames of one volume on one device, which must outlive it. The volume is on the device as a whole where that fits; otherwise
-/// gathered frames are drawn cube by cube (cube_drawing.h), and others fail with ErrorKind::OutOfMemory and a sentence with what they need.
+/// Draws the frames of one volume, or of several together, on one device, which must outlive it. The volume is on the device as a whole
+/// where that fits; otherwise gathered frames are drawn cube by cube (cube_drawing.h), and others fail with ErrorKind::OutOfMemory and a
+/// sentence with what they need.
 class Renderer {
  public:
   /// Uploads the volume if it fits, and makes what every frame needs: classified blocks and their lists, or for a volume that is
@@ -39,6 +42,9 @@ class Renderer {
   /// Of a volume in memory, which must outlive the renderer.
   Renderer(const Device& device, const Volume& volume, const Classification& classification, const TableSettings& table,
            const Progress& progress = {});
+  /// Of one or several volumes, which attenuate and shadow each other: gathered frames alone, with at most four lights, of volumes that are
+  /// on the device as a whole. Their order changes no bit.
+  Renderer(const Device& device, std::vector<SceneVolume> volumes, const TableSettings& table, const Progress& progress = {});
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
   ~Renderer();
 
@@ -96,6 +102,7 @@ class Renderer {
   std::shared_ptr<const Volume> volume_;  ///< the whole volume on the host, as long as frames are drawn of it; longer than `state_`
   std::unique_ptr<State> state_;          ///< and on the device; null where it does not fit
   std::unique_ptr<CubeDrawing> cubes_;
+  std::unique_ptr<MergedDrawing> merged_;               ///< of several volumes, in place of all of the above
   bool isTooLarge_ = false;                             ///< whether the whole volume certainly does not fit
   bool inCubes_ = false;                                ///< whether gathered frames are drawn cube by cube
   bool drewInCubes_ = false;                            ///< whether the last frame was

@@ -44,7 +44,8 @@ struct ScatteredGrid {
   uvec2
       texels;  // device address: `moments` vec4 by cell, x fastest: the mean radiance, and its flux along x, y and z; 0 without such light
   ivec3 cells;
-  float perVoxel;  // cells to the edge of a voxel
+  mat3 toCells;  // from the middle of a voxel plus a half, in index space, to cells: toCells * (voxel + 0.5) + firstCell
+  vec3 firstCell;
   float share;     // of this light that is scattered out of its direction
   float flux;      // factor of the flux towards the eye
   int moments;

@@ -10,10 +10,6 @@
 #define TRANSFER_TABLE_BINDING 7
 #include "gather_scalars.glsl"
 
-layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
-layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleList { SampleListHead head; uint samples[]; };
-layout(push_constant, scalar) uniform Push { SamplesPush push; };
-
 // The number of groups of ray.group slices, starting at `slice` in the ray's direction, that are empty; 0 if
 // the first may not be.
 int emptyGroups(Slices level, Ray ray, int slice) {
@@ -207,20 +203,14 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   distanceSum += ray.perSlice * sums.distance;
 }
 
-// The sample of this thread, relative to the first one of those that are marched; beyond them if there is none.
-ivec2 sampleOfThread() {
-  if (push.step != 0) return push.step * ivec2(gl_GlobalInvocationID.xy);
-  const uint group = gl_WorkGroupID.x + (gl_WorkGroupID.y + uint(push.firstRow)) * uint(push.groupsOfARow);
-  const uint number = group * uint(kGatherTile * kGatherTile) + gl_LocalInvocationIndex;
-  SampleList list = SampleList(push.list);
-  if (number >= list.head.count) return frame.seenExtent;
-  const int place = int(list.samples[number]);
-  return ivec2(place % frame.samples.x, place / frame.samples.x) - frame.firstSeen;
-}
-
 void main() {
   ivec2 index = sampleOfThread();
   if (any(greaterThanEqual(index, kCube ? frame.cube.extent : frame.seenExtent))) return;
+  if (!kCube && push.rays != uvec2(0)) {
+    // With other volumes: rays that meet only this one are marched as if there were no others.
+    const uint met = MergedRays(push.rays).values[slotOfThread()].volumes, own = 1u << push.volume;
+    if ((met & own) == 0 || (met == own) == kMerged) return;
+  }
   index += kCube ? frame.cube.corner : frame.firstSeen;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   const vec3 components = alongAxes(position);
@@ -251,6 +241,7 @@ void main() {
   if (!kScalars || kLevels)
     for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
       marchLevel(sums, distanceSum, sampleRay, level, false);
+  if (kMerged) return;
   // A ray that ended early becomes opaque: what lies behind its end is taken to have the mean colour of what lies in front.
   const float energy = 1.0 - sums.transmittance;
   const bool complete = !kCube || frame.cube.isLast != 0;

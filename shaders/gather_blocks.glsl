@@ -44,7 +44,7 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
   const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
   if (kCube && (inCube == 0 || medium == vec4(0.0))) return;
   SegmentLight lit;
-  addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, lit, ray.toEye);
+  addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, 0.5, lit, ray);
 }
 
 // For classified blocks that are lit at samples: the values on a slice.
@@ -104,8 +104,8 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
     }
   }
   const float stretch = ray.layer * clamp(ahead, 0.0, 1.0);
-  if (kEmits) lit.emission = leavingEmission(last, found, stretch);
-  addSegment(sums, medium, stretch, ahead - 0.5, lit, ray.toEye);
+  if (kEmits) lit.emission = leavingEmission(last, found, kMerged ? 0.0 : stretch);
+  addSegment(sums, medium, stretch, ahead - 0.5, 0.5, lit, ray);
   last = found;
 }
 

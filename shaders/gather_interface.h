@@ -120,6 +120,57 @@ struct SamplesPush {
   int rowsOfARange;  // number of rows of workgroups in each range of the list
   int firstRow;      // first row of the range that is marched
   int groups;        // number of workgroups that list samples
+  // Of a frame of several volumes (MergeFrame), otherwise 0:
+  int columns;          // samples of a row that are dispatched, without a list
+  int slots;            // number of rays of the dispatch, for which there is room in slabs
+  int volume;           // the number of the volume
+  uvec2 merge, rays;    // device addresses: MergeFrame; MergedRay of each slot
+  uvec2 slabs, depths;  // what the volumes have in slabs (merge_slabs.glsl)
+};
+
+// Several volumes in one image (engine/gathering/merged_pass.h). What each has along a ray is added up in slabs: between planes parallel
+// to the image, at equal distances within each interval.
+FV_CONSTANT int kMaxMerged = 32;
+FV_CONSTANT int kMaxSlabIntervals = 2 * kMaxMerged;
+
+struct MergedBox {
+  vec3 origin[3];     // the ray of the position p = (1, x, y) on the image: component c of its origin in index space is origin[c] . p,
+  vec3 direction[3];  // and of its way for a distance of 1 from the eye plane direction[c] . p
+  ivec3 dimensions;   // voxels
+};
+
+struct SlabInterval {
+  float begin, end;  // distances from the eye plane
+  float perUnit;     // slabs per unit of distance
+  float first;       // number of its first slab
+};
+
+struct MergeFrame {
+  int volumes, intervals, slabs;
+  float endTransmittance;                    // at which rays end
+  SlabInterval interval[kMaxSlabIntervals];  // in ascending order
+  MergedBox boxes[kMaxMerged];
+};
+
+// A ray of a frame of several volumes.
+struct MergedRay {
+  uint volumes;            // a bit for each volume whose box it meets
+  int firstSlab, endSlab;  // between these are they
+};
+
+// other_depths.comp
+struct OtherVolume {
+  mat3 toOther;  // from the index space of the volume to that of the other one: toOther * position + offset
+  vec3 offset;
+  ivec3 dimensions;  // of the other one
+};
+struct OtherDepthsPush {
+  uint firstBrick;
+  uint count;          // of bricks
+  int light;           // index of the light
+  int edge;            // of a block, voxels
+  ivec3 voxels;        // the volume's dimensions
+  uvec2 depths, rays;  // device addresses: of the volume's codes of depths; of all rays of the light through the other volume
 };
 
 struct GatherFrame {
@@ -232,6 +283,7 @@ static_assert(sizeof(GatherFrame) <= 16384);
 static_assert(sizeof(SurfaceGradientsPush) <= 128);
 static_assert(sizeof(LightDepthsPush) <= 128);
 static_assert(sizeof(BrickQuadsPush) <= 128);
+static_assert(sizeof(SamplesPush) <= 128);
 }  // namespace freevoxels::shader
 #endif
 #endif

@@ -2,6 +2,7 @@
 #ifndef GATHER_LIGHT_GLSL
 #define GATHER_LIGHT_GLSL
 #include "gather_march.glsl"
+#include "gather_samples.glsl"
 #include "phase_function.glsl"
 #define SCATTERED_TEXEL(i) texelFetch(scatteredTexels, i)
 #include "scattered_light.glsl"
@@ -58,9 +59,11 @@ vec3 lightOf(int light, SegmentLight lit, vec3 depth, vec3 toEye) {
   return source.color / distance2 * sum;
 }
 
-// Adds a segment of the ray with a constant source term (rgb) and extinction (a), whose middle is `ahead` slices from the eye. The light
-// that leaves it is dimmed by the mean of its own transmittance. `segmentLength` is in units of 1 / extinction.
-void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, SegmentLight lit, vec3 toEye) {
+// Adds a segment of the ray with a constant source term (rgb) and extinction (a), whose middle is `ahead` slices from the eye, and which
+// reaches `reach` slices from there. The light that leaves it is dimmed by the mean of its own transmittance, or with kMerged by that of
+// the slabs in which it is. `segmentLength` is in units of 1 / extinction.
+void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, float reach, SegmentLight lit, Ray ray) {
+  const vec3 toEye = ray.toEye;
   const float depth = segmentLength * medium.a;
   const float through = exp(-depth);
   const float rest = sums.transmittance * through;
@@ -72,14 +75,23 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
     before = sums.colorTransmittance;
     sums.colorTransmittance *= exp(-depths);
   }
+  vec3 within = depths;  // the optical depth that dims the segment's own light
+  if (kMerged) {
+    leaving = vec3(1.0);
+    within = vec3(0.0);
+  }
   if (kSampled) {
     leaving = kScattered ? leaving * scatteredLightAt(frame.scattered, kFlux, kSurfaces ? lit.position + lit.scatteredOffset : lit.position, toEye) : vec3(0.0);
     [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
-      if (i < kLights) leaving += lightOf(i, lit, depths, toEye);
+      if (i < kLights) leaving += lightOf(i, lit, within, toEye);
   }
   vec3 source = leaving * medium.rgb;
   if (kEmits) source += lit.emission;
-  sums.color += before * segmentLength * source;
+  if (kMerged)
+    addToSlabs(segmentLength * frame.sourceUnit * source, depth, depths, ray.perSlice * max(ahead - reach, 0.0),
+               ray.perSlice * max(ahead + reach, 0.0), kTinted);
+  else
+    sums.color += before * segmentLength * source;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
 }

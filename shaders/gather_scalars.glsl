@@ -206,8 +206,8 @@ void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, 
   const float shown = sums.transmittance * (nearLayer * near.a + farLayer * far.a);
   SegmentLight nearLit, farLit;
   if (kSampled) lightStretch(nearLit, farLit, last, found, near.a, far.a, shown, level, ray, slice);
-  addSegment(sums, near, nearLayer * nearPart, ahead - 0.75, nearLit, ray.toEye);
-  addSegment(sums, far, farLayer * farPart, ahead - 0.25, farLit, ray.toEye);
+  addSegment(sums, near, nearLayer * nearPart, ahead - 0.75, 0.25, nearLit, ray);
+  addSegment(sums, far, farLayer * farPart, ahead - 0.25, 0.25, farLit, ray);
   last = found;
 }
 

@@ -7,7 +7,7 @@
 
 // `flux` says whether there is a phase function; `voxel` is in index space, `toEye` a unit vector in world space.
 vec3 scatteredLightAt(ScatteredGrid grid, bool flux, vec3 voxel, vec3 toEye) {
-  const vec3 position = clamp((voxel + 0.5) * grid.perVoxel - 0.5, vec3(0.0), vec3(grid.cells - 1));
+  const vec3 position = clamp(grid.toCells * (voxel + 0.5) + grid.firstCell, vec3(0.0), vec3(grid.cells - 1));
   const ivec3 low = ivec3(position), up = min(low + 1, grid.cells - 1) - low;
   const vec3 part = position - vec3(low);
   const ivec3 strides = ivec3(1, grid.cells.x, grid.cells.x * grid.cells.y);

@@ -119,7 +119,7 @@ bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs
       return true;
     }
     const VolumeView view = beginVolume(source, jobs);
-    Renderer renderer(device_, source, view.scene.classification, options_.scene.description.method.table(), progress_.progress());
+    Renderer renderer(device_, view.scene.volumes(source), options_.scene.description.method.table(), progress_.progress());
     drawFrames(renderer, view, jobs);
     return true;
   } catch (const EmptyVolumeError& error) {
@@ -144,8 +144,7 @@ FrameSeries::VolumeView FrameSeries::beginVolume(const std::shared_ptr<const Vol
   VolumeView view{.scene = film_->resolve(input, std::move(volume)), .settings = options_.frameSettings()};
   Scene& scene = view.scene;
   view.cameras = {scene.camera};
-  if (jobs.size() > 1)
-    view.cameras = options_.scene.description.of(input).cameras(*scene.volume, scene.classification, int(jobs.size()));
+  if (jobs.size() > 1) view.cameras = options_.scene.description.of(input).cameras(scene, int(jobs.size()));
   scene.camera = view.cameras.front();
   view.settings.lighting = scene.lighting;
   progress_.erase();
@@ -171,7 +170,10 @@ void FrameSeries::announce(const Scene& view, std::size_t frames) {
 void FrameSeries::agree(const Scene& view, const VolumeSource& source) {
   if (options_.drawsShares()) {
     const bool hasEnvironment = view.lighting && view.lighting->environment;
-    report_.contentHash = contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
+    report_.contentHash.clear();
+    for (const SceneVolume& added : view.added)
+      report_.contentHash += contentHash(*known(added.source), added.classification, nullptr) + "-";
+    report_.contentHash += contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
     // The values of a file are not read yet: the header's checksum stands for those of all sections.
     if (const auto* const baked = dynamic_cast<const BakedSource*>(&source))
       report_.contentHash += fmt::format("-{:016x}", baked->file().header().hash);

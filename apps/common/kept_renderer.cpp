@@ -17,7 +17,7 @@ Renderer& KeptRenderer::get(const std::shared_ptr<const VolumeSource>& source, c
                             const Progress& progress) {
   if (isFor(source, description, scene)) return *renderer_;
   release();
-  renderer_ = std::make_unique<Renderer>(device_, source, scene.classification, description.method.table(), progress);
+  renderer_ = std::make_unique<Renderer>(device_, scene.volumes(source), description.method.table(), progress);
   source_ = source;
   text_ = rendererText(description, scene);
   isNew_ = true;

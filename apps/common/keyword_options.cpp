@@ -139,7 +139,7 @@ KeywordOptions::KeywordOptions(const std::vector<Json>& layers, const Sections& 
 }
 
 KeywordOptions::Sections KeywordOptions::sections(bool ofFile, bool choosesDevice) {
-  Sections names{"classification", "emission", "camera", "light", "method", "scene"};
+  Sections names{"volumes", "classification", "emission", "camera", "light", "method", "scene"};
   if (ofFile) names.emplace_back("input");
   if (choosesDevice) names.emplace_back("device");
   return names;

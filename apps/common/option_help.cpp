@@ -19,6 +19,10 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"clip-box",
      "Draw only these voxels: the first and the last ones along x, y and z, inclusive, in the volume's box, whose voxels "
      "'freevoxels info' counts"},
+    {"add",
+     "Another volume in the same image, with its own look and place: a file, behind it KEY=VALUE with commas between them, of the keys "
+     "grid, transfer-function, density-scale, albedo, emission, shading and others of this list, and transform=X,Y,Z or 12 numbers; or the "
+     "same as JSON. May be given several times; the order of the volumes does not matter"},
     {"clip-plane", "Draw only the voxels behind the plane through the world position X,Y,Z: the side away from its normal NX,NY,NZ"},
 
     {"background", "Colour behind the volume in a .png or .jpg, linear, or transparent [a dark gradient]"},

@@ -45,7 +45,7 @@ OptionList optionsOf(const SceneDescription& description, const std::function<bo
 void SceneOptions::add(CLI::App& app) {
   addSection(app, "input");
   addOut(app);
-  for (const char* section : {"output", "classification", "emission", "camera", "light"}) addSection(app, section);
+  for (const char* section : {"volumes", "output", "classification", "emission", "camera", "light"}) addSection(app, section);
   addFile(app);
   addText(app, "--save-scene", "FILE.json", saved, "Writes a scene of the options as they were resolved")->group("Scene");
 }

@@ -9,6 +9,7 @@
 #include "apps/common/sequence.h"
 #include "apps/common/whole_progress.h"
 #include "engine/core/error.h"
+#include "engine/description/added_volume.h"
 #include "engine/description/scene_fields.h"
 #include "engine/description/scene_json.h"
 
@@ -114,7 +115,7 @@ void SceneRenderer::resolveLikeFilm(const SceneDescription& description) {
 void SceneRenderer::resolveView(const SceneDescription& description, std::optional<TurnStep> step) {
   if (step) {
     description.resolveView(scene_);
-    scene_.camera = description.cameras(*scene_.volume, scene_.classification, step->frames)[std::size_t(step->frame)];
+    scene_.camera = description.cameras(scene_, step->frames)[std::size_t(step->frame)];
     return;
   }
   const CameraDescription& given = description.camera;
@@ -128,7 +129,7 @@ void SceneRenderer::resolveView(const SceneDescription& description, std::option
   const bool isMoved = !given.position && given.angles() != ownAngles;
   own.camera = given;
   if (isMoved) own.camera.orbit = ownAngles;  // whose distance and look-at point the frame has
-  scene_.camera = own.cameras(*scene_.volume, scene_.classification).front();
+  scene_.camera = own.cameras(scene_).front();
   if (isMoved) scene_.camera = movedTo(given.angles(), given.up.value_or(scene_.volume->up), scene_.camera);
 }
 
@@ -147,6 +148,10 @@ void SceneRenderer::takeSource(const SceneDescription& description, int frames, 
 
 /// Resolves the classification of scene_ unless it is that of the frame before.
 void SceneRenderer::classify(const SceneDescription& description) {
+  // What surfaces reflect is a part of how volumes look.
+  const std::string added = description.added.empty() ? "" : textOf(description, {"volumes", "light"});
+  if (added != added_) scene_.added = openAddedVolumes(description);
+  added_ = added;
   const std::string classification = textOf(description, {"classification", "emission"});
   if (classification == classification_) return;
   scene_.classification = description.resolveClassification(*scene_.volume);

@@ -97,6 +97,7 @@ class SceneRenderer {
   std::shared_ptr<const VolumeSource> source_;  ///< of the last frame, what it needed
   Scene scene_;                                 ///< of the last frame, with what is known of the volume
   std::optional<std::string> classification_;   ///< the fields of which scene_.classification was made
+  std::string added_;                           ///< the fields of which scene_.added was made
   KeptRenderer kept_;
 
   LastFrame lastFrame_;

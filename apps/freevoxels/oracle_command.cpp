@@ -84,8 +84,9 @@ void OracleCommand::draw() const {
   const auto start = std::chrono::steady_clock::now();
   const OracleSettings settings{
       .size = description.camera.size, .depth = description.output.aovs.needDepth(), .lighting = scene.lighting};
-  const Oracle oracle =
-      renderOracle(*scene.volume, scene.classification, scene.camera, settings, line.progress());
+  std::vector<PlacedMedium> volumes{{scene.volume.get(), &scene.classification}};
+  for (const SceneVolume& added : scene.added) volumes.push_back({known(added.source).get(), &added.classification});
+  const Oracle oracle = renderOracle(volumes, scene.camera, settings, line.progress());
   line.erase();
   logOracle(oracle, std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
   if (!oracle.converged)

@@ -171,8 +171,7 @@ void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& 
   ImageRequest request = drawn.request;
   request.scene = sceneInto(drawn, files);
   checkScene(request.scene, files);
-  const std::vector<Camera> cameras =
-      request.scene.cameras(*drawn.scene.volume, drawn.scene.classification, frames);
+  const std::vector<Camera> cameras = request.scene.cameras(drawn.scene, frames);
 
   VolumeCache volumes(request.scene, drawn.scene.volume);
   ImageMaker maker(device, volumes);

@@ -111,7 +111,7 @@ std::shared_ptr<const VolumeSource> ImageMaker::coarse(const Scene& scene, int v
 Scene ImageMaker::resolve(const ImageRequest& request, const FilmView* film) {
   std::shared_ptr<const Volume> volume = volumes_.read(request.scene, request.isFrame);
   if (scene_ && request.revision != 0 && request.revision == revision_ && scene_->volume == volume) {
-    scene_->camera = request.scene.cameras(*volume, scene_->classification).front();
+    scene_->camera = request.scene.cameras(*scene_).front();
     return *scene_;
   }
   scene_.reset();

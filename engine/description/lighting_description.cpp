@@ -44,6 +44,12 @@ void LightingDescription::check() const {
          Parameter(environmentRotation ? "environment-rotation" : "environment-intensity"), Parameter("environment"));
 }
 
+double LightingDescription::surfaceOf(const Volume& volume, const Classification& classification) const {
+  const Shading wanted = shading.value_or(Shading::Auto);
+  const bool surfaces = wanted == Shading::Gradient || (wanted == Shading::Auto && (classification.transferFunction || volume.isLevelSet));
+  return surfaces ? surface.value_or(1.0) : 0.0;
+}
+
 std::optional<Lighting> LightingDescription::resolve(const Volume& volume, const Classification& classification,
                                                  const Camera& camera) const {
   if (unlit) return std::nullopt;
@@ -64,9 +70,7 @@ std::optional<Lighting> LightingDescription::resolve(const Volume& volume, const
     lighting.lights.push_back(given.light);
     if (!given.hasIntensity) lighting.lights.back().intensity = defaultIntensity(given.light, volume);
   }
-  const Shading wanted = shading.value_or(Shading::Auto);
-  const bool surfaces = wanted == Shading::Gradient || (wanted == Shading::Auto && (classification.transferFunction || volume.isLevelSet));
-  if (surfaces && !lighting.lights.empty()) lighting.surface = surface.value_or(1.0);
+  if (!lighting.lights.empty()) lighting.surface = surfaceOf(volume, classification);
   return lighting;
 }
 

@@ -3,6 +3,7 @@
 #include <algorithm>
 
 #include "engine/core/error.h"
+#include "engine/description/added_volume.h"
 #include "engine/description/scene_fields.h"
 #include "engine/octree/hierarchy_layout.h"
 #include "engine/octree/volume_limits.h"
@@ -97,6 +98,10 @@ SceneDescription SceneDescription::of(const std::string& volume) const {
 
 void SceneDescription::check() const {
   input.check();
+  for (const AddedVolume& one : added) {
+    one.input.check();
+    one.emission.check(one.input);
+  }
   if (classification.albedoGrid && classification.albedoGrid != kNone && proceduralName(input.volume))
     fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("albedo-grid"), input.volume);
   emission.check(input);
@@ -127,7 +132,7 @@ BakedNeed SceneDescription::needOf(const fvx::FvxFile& file, int frameCount) con
   method.apply(frame);
   const HierarchyLayout hierarchy(outline.dimensions);
   int level = file.levels() - 1;
-  for (const Camera& one : cameras(outline, classified, frameCount)) {
+  for (const Camera& one : cameras(outline, classified, frameCount, added.empty() ? std::vector<SceneVolume>() : openAddedVolumes(*this))) {
     const PixelRays rays = pixelRays(one, camera.size, outline.indexToWorld);
     level = std::min(level, detailRule(hierarchy, rays, camera.size, double(frame.lod)).finest);
   }
@@ -135,13 +140,36 @@ BakedNeed SceneDescription::needOf(const fvx::FvxFile& file, int frameCount) con
   return {.level = std::max(level - 1, 0), .isRead = isRead};
 }
 
-std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classification& classified, int frameCount) const {
-  return camera.resolve(volume.up, [&] { return contentOf(volume, classified); }, frameCount);
+std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classification& classified, int frameCount,
+                                              std::span<const SceneVolume> others) const {
+  const auto content = [&] {
+    Subject all = contentOf(volume, classified);
+    if (others.empty()) return all;
+    for (const SceneVolume& other : others) {
+      const Subject own = contentOf(*known(other.source), other.classification);
+      all.points.insert(all.points.end(), own.points.begin(), own.points.end());
+    }
+    glm::dvec3 low = all.points.front(), high = low;
+    for (const glm::dvec3& point : all.points) {
+      low = glm::min(low, point);
+      high = glm::max(high, point);
+    }
+    all.centre = 0.5 * (low + high);
+    return all;
+  };
+  return camera.resolve(volume.up, content, frameCount);
+}
+
+std::vector<SceneVolume> Scene::volumes(std::shared_ptr<const VolumeSource> source) const {
+  std::vector<SceneVolume> all{{.source = std::move(source), .classification = classification}};
+  all.insert(all.end(), added.begin(), added.end());
+  return all;
 }
 
 Scene SceneDescription::resolve(std::shared_ptr<const Volume> volume) const {
   Scene scene{.volume = std::move(volume)};
   scene.classification = resolveClassification(*scene.volume);
+  scene.added = openAddedVolumes(*this);
   resolveView(scene);
   return scene;
 }
@@ -154,7 +182,7 @@ Classification SceneDescription::resolveClassification(const Volume& volume) con
 }
 
 void SceneDescription::resolveView(Scene& scene) const {
-  scene.camera = cameras(*scene.volume, scene.classification).front();
+  scene.camera = cameras(scene).front();
   scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
 }
 
@@ -168,7 +196,7 @@ Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Vo
   } else if (!volume->classification) {
     fixed.emission = {.emission = false};
   }
-  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting};
+  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting, .added = other.added};
   scene.classification = fixed.resolveClassification(*scene.volume);
   return scene;
 }
@@ -197,8 +225,8 @@ SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCou
 
 std::string rendererText(const SceneDescription& description, const Scene& scene) {
   const TableSettings table = description.method.table();
-  return fmt::format("{}table={} {} {} {}", textOf(description.resolved(scene), {"classification", "emission"}), int(table.directions),
-                     int(table.code), int(table.filter), table.pathLengthCorrection);
+  return fmt::format("{}table={} {} {} {}", textOf(description.resolved(scene), {"classification", "emission", "volumes"}),
+                     int(table.directions), int(table.code), int(table.filter), table.pathLengthCorrection);
 }
 
 }  // namespace freevoxels

@@ -11,6 +11,7 @@
 #include <functional>
 #include <memory>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -24,6 +25,7 @@
 #include "engine/volume/classification.h"
 #include "engine/volume/coarse_volume.h"
 #include "engine/volume/scan.h"
+#include "engine/volume/scene_volume.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
 #include "engine/volume/volume_source.h"
@@ -166,6 +168,8 @@ struct LightingDescription {
   bool hasLight() const { return !lights.empty() || ambient || environment; }
   /// Fails for fields that have no effect without others.
   void check() const;
+  /// Lighting::surface for a volume of which lights are scattered so.
+  double surfaceOf(const Volume& volume, const Classification& classification) const;
   /// The lighting, or nothing if unlit. Reads the environment: ErrorKind::Input.
   std::optional<Lighting> resolve(const Volume& volume, const Classification& classification, const Camera& camera) const;
 
@@ -175,6 +179,17 @@ struct LightingDescription {
 /// The intensity of a light that gives none: a position has kDefaultIrradiance in the middle of the volume's box, or at half its
 /// diagonal from the light, whichever is farther.
 double defaultIntensity(const Light& light, const Volume& volume);
+
+/// A volume besides that of `input`: how it looks is its own, but what lights do with surfaces (Shading).
+struct AddedVolume {
+  InputDescription input;
+  ClassificationDescription classification;
+  EmissionDescription emission;
+  std::optional<Shading> shading;       ///< else LightingDescription::shading
+  std::optional<glm::dmat4> transform;  ///< from where the file has it in the world to where it is
+
+  bool operator==(const AddedVolume&) const = default;
+};
 
 /// The method of drawing, in which the paper and FreeVoxels differ. What is not given is the default of FreeVoxels, or the paper's.
 struct MethodDescription {
@@ -228,6 +243,10 @@ struct Scene {
   Classification classification;
   Camera camera;
   std::optional<Lighting> lighting;
+  std::vector<SceneVolume> added;  ///< the other volumes of the scene
+
+  /// All volumes: `source` is that of `volume`.
+  std::vector<SceneVolume> volumes(std::shared_ptr<const VolumeSource> source) const;
 };
 
 /// What frames need of a baked file.
@@ -245,6 +264,7 @@ struct SceneDescription {
   LightingDescription lighting;
   MethodDescription method;
   OutputDescription output;
+  std::vector<AddedVolume> added;  ///< the volumes besides that of `input`
 
   /// The same scene of another volume.
   SceneDescription of(const std::string& volume) const;
@@ -260,8 +280,12 @@ struct SceneDescription {
   /// are read, with boxes of at most kMaxNumberedVoxels. A frame of a film may lack grids. Fails as readVolume().
   std::shared_ptr<const VolumeSource> openSource(int frameCount, bool mayStayFile = true, bool isFrame = false,
                                                  const Progress& progress = {}) const;
-  /// As CameraDescription::resolve.
-  std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frameCount = 1) const;
+  /// As CameraDescription::resolve, of all volumes.
+  std::vector<Camera> cameras(const Volume& volume, const Classification& classification, int frameCount = 1,
+                              std::span<const SceneVolume> others = {}) const;
+  std::vector<Camera> cameras(const Scene& scene, int frameCount = 1) const {
+    return cameras(*scene.volume, scene.classification, frameCount, scene.added);
+  }
   /// Reads the other files and resolves everything.
   Scene resolve(std::shared_ptr<const Volume> volume) const;
   /// The two parts of resolve(): classification, and camera and light. `scene` must have the other part.

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
+#include "engine/description/added_volume.h"
 #include "engine/description/text_values.h"
 
 namespace freevoxels {
@@ -170,6 +171,23 @@ void addInput(std::vector<SceneField>& fields) {
                                                          return marks.value ? numberText(*marks.value) : std::string(kNone);
                                                        }});
   section.add("clip-plane", &Input::clipPlane, numbers<ClipPlane>({.form = "X,Y,Z,NX,NY,NZ", .range = {-1e30, 1e30}}));
+}
+
+void addVolumes(std::vector<SceneField>& fields) {
+  Section<std::vector<AddedVolume>> section(fields, "volumes", &SceneDescription::added);
+  SceneField& added = section.add(
+      "add", Kind::Volumes, "FILE[,KEY=VALUE...]",
+      [](std::vector<AddedVolume>& volumes, const Texts& given) {
+        volumes.clear();
+        for (const std::string& one : given) volumes.push_back(readAddedVolume(one));
+      },
+      [](const std::vector<AddedVolume>& volumes) {
+        Texts texts;
+        for (const AddedVolume& one : volumes) texts.push_back(addedVolumeText(one));
+        return texts;
+      });
+  added.repeated = true;
+  added.plural = "volumes";
 }
 
 void addClassification(std::vector<SceneField>& fields) {
@@ -357,7 +375,7 @@ const std::vector<SceneField>& sceneFields() {
   static const std::vector<SceneField> fields = [] {
     std::vector<SceneField> all;
     all.reserve(80);  // so that references to fields stay valid
-    for (const auto add : {addInput, addClassification, addEmission, addCamera, addLighting, addMethod, addOutput}) add(all);
+    for (const auto add : {addInput, addVolumes, addClassification, addEmission, addCamera, addLighting, addMethod, addOutput}) add(all);
     return all;
   }();
   return fields;

@@ -39,6 +39,7 @@ struct SceneField {
   enum class Kind {
     Value,    ///< numbers or words
     Keys,     ///< KEY=VALUE with commas between them
+    Volumes,  ///< another volume: a file with KEY=VALUE behind it, or JSON that begins with {
     Name,     ///< a name, whatever it looks like
     Volume,   ///< a file, or procedural:NAME
     File,     ///< a file, or JSON that begins with {
@@ -57,8 +58,10 @@ struct SceneField {
   /// The texts that read() takes; none if the field is not given.
   std::function<std::vector<std::string>(const SceneDescription&)> texts;
 
+  std::string plural = {};  ///< name + "s" where it is empty
+
   /// The key in a scene file: "lights" for "light".
-  std::string key() const { return repeated ? name + "s" : name; }
+  std::string key() const { return !repeated ? name : plural.empty() ? name + "s" : plural; }
   bool isFile() const { return kind == Kind::Volume || kind == Kind::File; }
   bool isOrExcludes(const SceneField& other) const;
 };

@@ -11,6 +11,7 @@
 #include "engine/core/json_file.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/printable.h"
+#include "engine/description/added_volume.h"
 #include "engine/description/text_values.h"
 
 namespace freevoxels {
@@ -64,6 +65,12 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
     if (value.is_boolean()) return value.dump();
     fail(ErrorKind::Input, "{} takes true or false, not {}", name, inShort(value));
   }
+  if (field.kind == Kind::Volumes && (value.is_object() || value.is_string())) {
+    const Json named = value.is_string() && !isInlineJson(value.get<std::string>()) ? Json{{"volume", value}} : value;
+    if (named.is_string()) return named.get<std::string>();
+    return withFiles(named, [&](const std::string& file) { return isNoPath(file) ? file : (folder / file).lexically_normal().string(); })
+        .dump(-1, ' ', false, Json::error_handler_t::replace);
+  }
   if (value.is_string()) {
     const auto text = value.get<std::string>();
     return field.isFile() && !isNoPath(text) ? (folder / text).lexically_normal().string() : text;
@@ -97,21 +104,6 @@ bool isUnicode(const Json& value) {
   }
 }
 
-/// One text of a field as JSON.
-Json jsonOf(const SceneField& field, const std::string& text, const std::optional<fs::path>& folder) {
-  if (field.kind == Kind::Flag || field.kind == Kind::Switch) return text == "true";
-  if (text.empty()) return true;
-  if (field.isFile()) {
-    if (isInlineJson(text)) return parseJson(field.name, "inline", text);
-    return folder && !isNoPath(text) ? fs::proximate(text, *folder).string() : text;
-  }
-  if (field.kind == Kind::Name) return text;
-  if (field.kind != Kind::Keys) return numbersOrText(text, separatorOf(field));
-  Json object = Json::object();
-  for (const auto& [key, value] : readKeys(field.name, field.form, text)) object[key] = numbersOrText(value, ',');
-  return object;
-}
-
 /// Formats objects of two levels and lists of objects over several lines, other values on one line.
 std::string layOut(const OrderedJson& value, int depth = 0) {
   const bool list = value.is_array() && !value.empty() && value.front().is_object();
@@ -128,12 +120,40 @@ bool isFormerDefault(const SceneField& field, const Json& value) {
   return (field.name == "draw" && value == "auto") || (field.name == "attenuation" && (value == "auto" || value == "exact"));
 }
 
+/// Whether a list stands for the one field of a section: "volumes": [...].
+bool isListOf(const std::string& section, const Json& value) {
+  return value.is_array() &&
+         std::ranges::any_of(sceneFields(), [&](const SceneField& field) { return field.section == section && field.key() == section; });
+}
+
+/// The keys of a section with their values.
+Json keysOf(const std::string& section, const Json& fields) {
+  return isListOf(section, fields) ? Json{{section, fields}} : fields;
+}
+
 /// Whether the key is one of earlier versions that has no effect any more.
 bool isFormerKey(const std::string& section, const std::string& key) {
   return section == "light" && key == "scattering-scale";
 }
 
 }  // namespace
+
+OrderedJson fieldJson(const SceneField& field, const std::string& text, const std::optional<fs::path>& folder) {
+  if (field.kind == Kind::Volumes)
+    return withFiles(parseJson(field.name, "inline", text),
+                     [&](const std::string& file) { return folder && !isNoPath(file) ? fs::proximate(file, *folder).string() : file; });
+  if (field.kind == Kind::Flag || field.kind == Kind::Switch) return text == "true";
+  if (text.empty()) return true;
+  if (field.isFile()) {
+    if (isInlineJson(text)) return parseJson(field.name, "inline", text);
+    return folder && !isNoPath(text) ? fs::proximate(text, *folder).string() : text;
+  }
+  if (field.kind == Kind::Name) return text;
+  if (field.kind != Kind::Keys) return numbersOrText(text, separatorOf(field));
+  Json object = Json::object();
+  for (const auto& [key, value] : readKeys(field.name, field.form, text)) object[key] = numbersOrText(value, ',');
+  return object;
+}
 
 template <typename... Args>
 void SceneFile::failHere(const std::string& format, Args&&... args) const {
@@ -144,7 +164,7 @@ SceneFile::SceneFile(const fs::path& file) : file_(file), root_(std::make_shared
   if (!root_->is_object()) failHere("must be an object {{\"camera\": ...}}");
   for (const auto& [section, keys] : root_->items()) {
     if (!isSceneSection(section)) failUnknown("", section);
-    if (!keys.is_object()) failHere("{} takes an object of keys, not {}", inShort(section), inShort(keys));
+    if (!keys.is_object() && !isListOf(section, keys)) failHere("{} takes an object of keys, not {}", inShort(section), inShort(keys));
   }
 }
 
@@ -175,7 +195,8 @@ bool SceneFile::hasVolume() const {
 
 void SceneFile::applyTo(SceneDescription& description, const std::function<bool(const SceneField&)>& wanted) const {
   std::vector<const SceneField*> given;
-  for (const auto& [section, keys] : root_->items())
+  for (const auto& [section, fields] : root_->items()) {
+    const Json keys = keysOf(section, fields);
     for (const auto& [key, value] : keys.items()) {
       if (isFormerKey(section, key)) continue;
       const SceneField& field = find(section, key);
@@ -190,15 +211,18 @@ void SceneFile::applyTo(SceneDescription& description, const std::function<bool(
         if (field.isOrExcludes(*other)) failHere("{} and {} exclude each other: keep one of them", quoted(field), quoted(*other));
       given.push_back(&field);
     }
+  }
 }
 
 std::vector<std::string> SceneFile::warnings() const {
   std::vector<std::string> result;
-  for (const auto& [section, keys] : root_->items())
+  for (const auto& [section, fields] : root_->items()) {
+    const Json keys = keysOf(section, fields);
     for (const auto& [key, value] : keys.items())
       if (isFormerKey(section, key))
         result.push_back(fmt::format("scene '{}': {} is of an earlier version and has no effect: light is scattered as {} says",
                                      file_.string(), quoted(section, key), quoted("light", "scattering")));
+  }
   return result;
 }
 
@@ -212,11 +236,11 @@ OrderedJson sceneToJson(const SceneDescription& description, const std::optional
   OrderedJson scene = OrderedJson::object();
   for (const SceneField& field : sceneFields())
     for (const std::string& text : field.texts(description)) {
-      OrderedJson& place = scene[field.section][field.key()];
+      OrderedJson& place = field.key() == field.section ? scene[field.section] : scene[field.section][field.key()];
       if (field.repeated)
-        place.push_back(OrderedJson(jsonOf(field, text, folder)));
+        place.push_back(OrderedJson(fieldJson(field, text, folder)));
       else
-        place = jsonOf(field, text, folder);
+        place = fieldJson(field, text, folder);
     }
   return scene;
 }
@@ -225,7 +249,7 @@ void writeScene(const fs::path& file, const SceneDescription& description) {
   const fs::path folder = fs::absolute(file).parent_path();
   for (const SceneField& field : sceneFields())
     for (const std::string& text : field.texts(description))
-      if (!isUnicode(jsonOf(field, text, folder)))
+      if (!isUnicode(fieldJson(field, text, folder)))
         fail(ErrorKind::Input, "a scene file is Unicode text, and the {} '{}' is not: give that file or grid another name", field.name, printable(text));
   writeTextAtomically(file, layOut(sceneToJson(description, folder)) + "\n");
 }

@@ -45,6 +45,9 @@ SceneDescription readScene(const std::filesystem::path& file);
 /// The description as JSON: the fields that it gives, by section. File names become relative to `folder`, or stay as they are.
 nlohmann::ordered_json sceneToJson(const SceneDescription& description, const std::optional<std::filesystem::path>& folder);
 
+/// One text of a field as JSON; names of files as in sceneToJson().
+nlohmann::ordered_json fieldJson(const SceneField& field, const std::string& text, const std::optional<std::filesystem::path>& folder);
+
 /// Writes such a file, a key on each line. Atomic. Fails with ErrorKind::Output.
 void writeScene(const std::filesystem::path& file, const SceneDescription& description);
 

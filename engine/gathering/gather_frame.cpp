@@ -21,6 +21,10 @@ constexpr double kCoarseVoxels = 1.25;
 /// and up to a half at an edge.
 constexpr double kSmoothVoxels = 2.0;
 
+/// Largest part of an image that is filled before a smaller rectangle of pixels is computed: to fill all of it takes as long as to compute
+/// a quarter.
+constexpr double kMostPixels = 0.75;
+
 std::array<int, 2> sidesOf(int axis) {
   return {axis == 0 ? 1 : 0, axis == 2 ? 1 : 2};
 }
@@ -149,7 +153,6 @@ SeenRectangle seenRectangle(const PixelRays& rays, const glm::dmat3& toPixel, gl
 void setSeen(shader::GatherFrame& frame, const SeenRectangle& seen) {
   constexpr double kMargin = 3.0;       // samples: at least one without any light, however `seenLow` is rounded, and one for the stencil
   constexpr double kPixelMargin = 4.0;  // samples: the stencil's reach and the interpolation's
-  constexpr double kMostPixels = 0.75;  // of the image: to fill all of it first takes as long as to compute a quarter
   const double pitch = double(frame.pitch);
   const glm::dvec2 low = (seen[0] - glm::dvec2(frame.firstSample)) / pitch;
   const glm::dvec2 high = (seen[1] - glm::dvec2(frame.firstSample)) / pitch;
@@ -165,6 +168,13 @@ void setSeen(shader::GatherFrame& frame, const SeenRectangle& seen) {
   if (double(frame.pixelExtent.x) * frame.pixelExtent.y <= kMostPixels * double(frame.size.x) * frame.size.y) return;
   frame.firstPixel = glm::ivec2(0);
   frame.pixelExtent = frame.size;
+}
+
+/// The smallest rectangle around both.
+void extend(glm::ivec2& first, glm::ivec2& extent, glm::ivec2 otherFirst, glm::ivec2 otherExtent) {
+  const glm::ivec2 end = glm::max(first + extent, otherFirst + otherExtent);
+  first = glm::min(first, otherFirst);
+  extent = end - first;
 }
 
 }  // namespace
@@ -211,6 +221,47 @@ std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const 
   if (glm::any(glm::lessThan(high + kMargin, begun)) || glm::any(glm::greaterThan(low - kMargin, last))) return {};
   const glm::ivec2 first(glm::clamp(glm::floor(low) - kMargin, begun, last));
   return SampleRectangle{.first = first, .extent = glm::ivec2(glm::clamp(glm::ceil(high) + kMargin, glm::dvec2(first), last)) - first + 1};
+}
+
+void shareLattice(std::span<shader::GatherFrame> frames, const FrameSettings& settings) {
+  const shader::GatherFrame& finest = *std::ranges::min_element(frames, {}, &shader::GatherFrame::pitch);
+  shader::GatherFrame common = finest;
+  // Every sample and every pixel: seen rectangles are of each frame's own lattice.
+  common.sampleTolerance = std::ranges::min(frames, {}, &shader::GatherFrame::sampleTolerance).sampleTolerance;
+  common.distanceTolerance = std::ranges::min(frames, {}, &shader::GatherFrame::distanceTolerance).distanceTolerance;
+  common.endTransmittance = std::ranges::min(frames, {}, &shader::GatherFrame::endTransmittance).endTransmittance;
+  const double pitch = double(common.pitch);
+  for (const shader::GatherFrame& frame : frames) {
+    const double scale = double(frame.pitch) / pitch;
+    // Position on the image of a sample of the frame, in samples of the common lattice.
+    const auto place = [&](glm::ivec2 sample) {
+      return (glm::dvec2(frame.firstSample) + double(frame.pitch) * glm::dvec2(sample) - glm::dvec2(common.firstSample)) / pitch;
+    };
+    const glm::dvec2 last(common.samples - 1);
+    const glm::ivec2 first = glm::ivec2(glm::clamp(glm::floor(place(frame.firstSeen) - scale), glm::dvec2(0.0), last)) & ~1;
+    const glm::ivec2 end =
+        glm::ivec2(glm::clamp(glm::ceil(place(frame.firstSeen + frame.seenExtent - 1) + scale), glm::dvec2(first), last));
+    extend(common.firstSeen, common.seenExtent, first, ((end + 1) & ~1) - first + 1);
+    extend(common.firstPixel, common.pixelExtent, frame.firstPixel, frame.pixelExtent);
+  }
+  common.ownCells = {0, (common.seenExtent.y + 1) / 2};
+  if (double(common.pixelExtent.x) * common.pixelExtent.y > kMostPixels * double(settings.size.x) * settings.size.y) {
+    common.firstPixel = glm::ivec2(0);
+    common.pixelExtent = settings.size;
+  }
+  for (shader::GatherFrame& frame : frames) {
+    frame.pitch = common.pitch;
+    frame.samples = common.samples;
+    frame.firstSample = common.firstSample;
+    frame.firstSeen = common.firstSeen;
+    frame.seenExtent = common.seenExtent;
+    frame.ownCells = common.ownCells;
+    frame.firstPixel = common.firstPixel;
+    frame.pixelExtent = common.pixelExtent;
+    frame.sampleTolerance = common.sampleTolerance;
+    frame.distanceTolerance = common.distanceTolerance;
+    frame.endTransmittance = common.endTransmittance;
+  }
 }
 
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,

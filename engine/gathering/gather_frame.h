@@ -3,6 +3,7 @@
 
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 
 #include "engine/octree/device_volume.h"
 #include "engine/scene/camera.h"
@@ -17,6 +18,10 @@ namespace freevoxels {
 /// `endTransmittance`.
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double endTransmittance);
+
+/// Gives frames of several volumes, with the same camera and settings, one lattice, fine enough for each, and the rectangles that are seen
+/// of all.
+void shareLattice(std::span<shader::GatherFrame> frames, const FrameSettings& settings);
 
 /// Whether some ray of the lattice may march along this axis.
 bool someRayHasAxis(const shader::GatherFrame& frame, int axis);

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "embedded/light_depths.h"
+#include "embedded/other_depths.h"
 #include "embedded/surface_gradients.h"
 #include "engine/core/error.h"
 #include "engine/gathering/gather_volume.h"
@@ -75,7 +76,41 @@ void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) 
     recordLightDepths(commands, shading, level);
   }
   commands.barrier(kComputeStage, kComputeStage);
+  recordShadows(commands, shading);
   lightLevels_ |= wantedLevels_;
+}
+
+/// Adds the depths of other volumes, one after the other.
+void GatherVolume::recordShadows(Commands& commands, const Shading& shading) {
+  const DeviceVolume& volume = built_.volume;
+  for (const ShadowingVolume& other : shading.others) {
+    const auto number = std::size_t(&other - shading.others.data());
+    if (number == others_.size()) others_.emplace_back(device_, sizeof(shader::OtherVolume), MemoryUse::Device, "volume beside");
+    const glm::dmat4 toOther = glm::inverse(other.indexToWorld) * volume.indexToWorld;
+    commands.update(others_[number],
+                    shader::OtherVolume{.toOther = glm::dmat3(toOther), .offset = glm::dvec3(toOther[3]), .dimensions = other.dimensions});
+    for (int level = 0; level <= volume.hierarchy.top(); ++level)
+      if (lacksLevel(lightLevels_, level)) recordOtherDepths(commands, other, others_[number], level);
+    commands.barrier(kComputeStage, kComputeStage);
+  }
+}
+
+void GatherVolume::recordOtherDepths(Commands& commands, const ShadowingVolume& other, const Buffer& constants, int level) {
+  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+  for (int light = 0; light < sampleLights() && count > 0; ++light) {
+    const RaySweep& rays = other.lights->rays(light);
+    const std::optional<TexelView>& texels = rays.depthTexels();
+    const Pipeline pass = makeComputePipeline(device_, shaders::other_depths, {other.scalars, texels.has_value()});
+    const std::array<Binding, 4> bindings{&brickCellTexels_, &constants, &other.lights->lights(), texels ? &*texels : &brickCellTexels_};
+    const shader::OtherDepthsPush push{.firstBrick = first,
+                                       .count = count,
+                                       .light = light,
+                                       .edge = 1 << level,
+                                       .voxels = built_.volume.layout.dimensions,
+                                       .depths = addressWords(lightCodes_[std::size_t(light)].address()),
+                                       .rays = addressWords(rays.depths().address())};
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+  }
 }
 
 void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading, int level) {
@@ -154,6 +189,12 @@ void GatherVolume::recordLightQuads(Commands& commands, int axis) {
   quads.lightLevels |= wantedLevels_;
 }
 
+/// From the volume's index space to that of the cells of scattered light.
+glm::dmat4 GatherVolume::toMedium(const ScatteringSolver& scattered) const {
+  const glm::dmat4 &own = built_.volume.indexToWorld, &cells = scattered.medium().indexToWorld();
+  return own == cells ? glm::dmat4(1.0) : glm::inverse(cells) * own;
+}
+
 void GatherVolume::describeLights(shader::GatherFrame& frame) const {
   if (!isSampled_) return;
   const DeviceVolume& volume = built_.volume;
@@ -173,7 +214,8 @@ void GatherVolume::describeLights(shader::GatherFrame& frame) const {
     frame.lights[i].lightsFirst = glm::vec3(glm::lessThan(fromFirst, glm::dvec3(0.0)));
     frame.lights[i].lightsLast = glm::vec3(glm::greaterThan(fromLast, glm::dvec3(0.0)));
   }
-  if (hasScattered()) frame.scattered = scattered_->onDevice();
+  // A medium of several volumes has an index space of its own.
+  if (hasScattered()) frame.scattered = surroundings_ != nullptr ? scattered_->onDevice() : scattered_->onDevice(toMedium(*scattered_));
   frame.tint = lighting_->tint * deltaScale_;
   frame.forward = float(splitPhase(*lighting_).forward);
   frame.phaseG = float(lighting_->phaseG);

@@ -9,16 +9,22 @@
 #include "embedded/gather_list_offsets.h"
 #include "embedded/gather_post_lit.h"
 #include "embedded/gather_post_lit_cube.h"
+#include "embedded/gather_post_lit_merged.h"
 #include "embedded/gather_post_surfaces.h"
 #include "embedded/gather_post_surfaces_cube.h"
+#include "embedded/gather_post_surfaces_merged.h"
 #include "embedded/gather_post_unlit.h"
 #include "embedded/gather_post_unlit_cube.h"
+#include "embedded/gather_post_unlit_merged.h"
 #include "embedded/gather_pre_lit.h"
 #include "embedded/gather_pre_lit_cube.h"
+#include "embedded/gather_pre_lit_merged.h"
 #include "embedded/gather_pre_surfaces.h"
 #include "embedded/gather_pre_surfaces_cube.h"
+#include "embedded/gather_pre_surfaces_merged.h"
 #include "embedded/gather_pre_unlit.h"
 #include "embedded/gather_pre_unlit_cube.h"
+#include "embedded/gather_pre_unlit_merged.h"
 #include "embedded/gather_refine.h"
 #include "embedded/gather_resample.h"
 #include "embedded/gather_roughness.h"
@@ -30,18 +36,17 @@ namespace freevoxels {
 
 namespace {
 
-/// The shader for the whole volume, or for a cube of it.
-const Shader& gatherShader(const GatherVolume& volume, bool cube) {
+const Shader& gatherShader(const GatherVolume& volume, GatherPass::Case which) {
   using namespace shaders;
-  static constexpr std::array<std::array<std::array<const Shader*, 2>, 3>, 2> kShaders{{
-      {{{&gather_pre_unlit, &gather_pre_unlit_cube},
-        {&gather_pre_lit, &gather_pre_lit_cube},
-        {&gather_pre_surfaces, &gather_pre_surfaces_cube}}},
-      {{{&gather_post_unlit, &gather_post_unlit_cube},
-        {&gather_post_lit, &gather_post_lit_cube},
-        {&gather_post_surfaces, &gather_post_surfaces_cube}}},
+  static constexpr std::array<std::array<std::array<const Shader*, 3>, 3>, 2> kShaders{{
+      {{{&gather_pre_unlit, &gather_pre_unlit_cube, &gather_pre_unlit_merged},
+        {&gather_pre_lit, &gather_pre_lit_cube, &gather_pre_lit_merged},
+        {&gather_pre_surfaces, &gather_pre_surfaces_cube, &gather_pre_surfaces_merged}}},
+      {{{&gather_post_unlit, &gather_post_unlit_cube, &gather_post_unlit_merged},
+        {&gather_post_lit, &gather_post_lit_cube, &gather_post_lit_merged},
+        {&gather_post_surfaces, &gather_post_surfaces_cube, &gather_post_surfaces_merged}}},
   }};
-  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][cube ? 1 : 0];
+  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][std::size_t(which)];
 }
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, const Shader& shader) {
@@ -66,7 +71,7 @@ GatherPass::GatherPass(const Device& device)
 
 void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, gatherShader(volume, false));
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, gatherShader(volume, Case::Whole));
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
@@ -93,29 +98,35 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   commands.update(frame_, frame);
 }
 
+std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int axis, const Buffer& frameBuffer) const {
+  const GatherVolume::Quads& quads = volume.quads(axis);
+  std::vector<Binding> bindings{&frameBuffer,        &volume.brickNumbers(),       &quads.medium.texels,      &quads.source.texels,
+                                &quads.extra.texels, &gathered_.colorEnergyTexels, &gathered_.distanceTexels, &volume.transferTable(),
+                                &volume.skips()};
+  for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
+  bindings.emplace_back(volume.hasScattered() ? &volume.scatteredTexels() : &noLightTexels_);
+  bindings.emplace_back(&volume.gradients());
+  return bindings;
+}
+
+void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Buffer& frameBuffer,
+                          glm::ivec2 extent, Case which, const shader::SamplesPush& samples) const {
+  for (int axis = 0; axis < 3; ++axis)
+    if (someRayHasAxis(frame, axis))
+      commands.dispatch(makeGather(device_, axis, volume, frame.coarsest > 0, gatherShader(volume, which)),
+                        gatherBindings(volume, axis, frameBuffer), samples, glm::ivec3(extent, 1));
+}
+
 void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent,
-                                 bool cube, const shader::SamplesPush& samples) {
-  const Shader& shader = gatherShader(volume, cube);
+                                 Case which, const shader::SamplesPush& samples) {
+  if (samples.step != 0) {
+    dispatch(commands, volume, frame, frame_, extent, which, samples);
+    return;
+  }
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
-    const GatherVolume::Quads& quads = volume.quads(axis);
-    std::vector<Binding> bindings{&frame_,
-                                  &volume.brickNumbers(),
-                                  &quads.medium.texels,
-                                  &quads.source.texels,
-                                  &quads.extra.texels,
-                                  &gathered_.colorEnergyTexels,
-                                  &gathered_.distanceTexels,
-                                  &volume.transferTable(),
-                                  &volume.skips()};
-    for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
-    bindings.emplace_back(volume.hasScattered() ? &volume.scatteredTexels() : &noLightTexels_);
-    bindings.emplace_back(&volume.gradients());
-    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, shader);
-    if (samples.step != 0) {
-      commands.dispatch(pipeline, bindings, samples, glm::ivec3(extent, 1));
-      continue;
-    }
+    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, gatherShader(volume, which));
+    const std::vector<Binding> bindings = gatherBindings(volume, axis, frame_);
     shader::SamplesPush range = samples;
     for (int i = 0; i < shader::kSampleRanges; ++i) {
       range.firstRow = i * samples.rowsOfARange;
@@ -126,10 +137,16 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
 }
 
 void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
+  recordSamples(commands, frame, [&](Commands& recording, glm::ivec2 extent, const shader::SamplesPush& samples) {
+    dispatchSamples(recording, volume, frame, extent, Case::Whole, samples);
+  });
+}
+
+void GatherPass::recordSamples(Commands& commands, const shader::GatherFrame& frame, const March& march) {
   if (frame.sampleTolerance > 0.0f)
-    recordAdaptive(commands, volume, frame);
+    recordAdaptive(commands, frame, march);
   else
-    dispatchSamples(commands, volume, frame, frame.seenExtent, false);
+    march(commands, frame.seenExtent, {.step = 1});
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -147,10 +164,10 @@ void GatherPass::makeAdaptiveRoom(std::uint64_t coarse, std::uint64_t groups) {
 }
 
 /// Marches the coarse samples, and of the others those that are not interpolated, from a list in a fixed order.
-void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
+void GatherPass::recordAdaptive(Commands& commands, const shader::GatherFrame& frame, const March& march) {
   const glm::ivec2 coarse = (frame.seenExtent + 1) / 2, groups = (coarse + shader::kGatherTile - 1) / shader::kGatherTile;
   makeAdaptiveRoom(std::uint64_t(coarse.x) * std::uint64_t(coarse.y), std::uint64_t(groups.x) * std::uint64_t(groups.y));
-  dispatchSamples(commands, volume, frame, coarse, false, {.step = 2});
+  march(commands, coarse, {.step = 2});
   commands.barrier(kComputeStage, kComputeStage);
 
   // Passes of their own: what a workgroup of them takes is not what one of the march takes.
@@ -167,7 +184,7 @@ void GatherPass::recordAdaptive(Commands& commands, const GatherVolume& volume, 
   const shader::SamplesPush listed = recordList(commands, coarse, groups);
   commands.barrier(kComputeStage, kComputeStage | VK_PIPELINE_STAGE_2_DRAW_INDIRECT_BIT);
   commands.beginPass("gather rough rays");
-  dispatchSamples(commands, volume, frame, glm::ivec2(0), false, listed);
+  march(commands, glm::ivec2(0), listed);
 }
 
 /// Lists the samples that the workgroups have counted, and returns how the list is marched.
@@ -198,7 +215,7 @@ void GatherPass::recordListed(Commands& commands, const GatherVolume& volume, co
   adaptive_.list = Buffer(device_, sizeof(head) + places.size_bytes(), MemoryUse::Upload, "listed samples", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
   std::memcpy(adaptive_.list.mapped(), &head, sizeof(head));
   std::memcpy(adaptive_.list.mapped() + sizeof(head), places.data(), places.size_bytes());
-  dispatchSamples(commands, volume, frame, glm::ivec2(0), false,
+  dispatchSamples(commands, volume, frame, glm::ivec2(0), Case::Whole,
                   {.list = addressWords(adaptive_.list.address()), .step = 0, .groupsOfARow = 1, .rowsOfARange = int(head.ranges[0].y)});
   commands.barrier(kComputeStage, kComputeStage);
 }
@@ -218,7 +235,7 @@ void GatherPass::recordClear(Commands& commands) {
 void GatherPass::recordCube(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
   commands.beginPass("gather");
   begin(commands, frame);
-  dispatchSamples(commands, volume, frame, frame.cube.extent, true);
+  dispatchSamples(commands, volume, frame, frame.cube.extent, Case::Cube);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -262,7 +279,6 @@ void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& fram
   recordPixels(commands, frame, scalars, targets);
 }
 
-/// The image of the gathered samples.
 void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   commands.beginPass("gather image");
   // Pixels that do not see the volume are empty, without a distance.

@@ -4,6 +4,7 @@
 // over pixels. The transmittance to the eye is computed along each sample's ray: Subr et al. 2007, Section 2.1,
 // Eq. 4, without an attenuation table.
 
+#include <functional>
 #include <span>
 
 #include "engine/gathering/gather_frame.h"
@@ -29,6 +30,19 @@ class GatherPass {
   /// The targets have to be in layout GENERAL.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
+  /// Marches samples in another way than that of one volume: every `samples.step`-th along both axes, `extent` of them, or with a step of 0
+  /// those that are listed.
+  using March = std::function<void(Commands&, glm::ivec2 extent, const shader::SamplesPush& samples)>;
+  void recordSamples(Commands& commands, const shader::GatherFrame& frame, const March& march);
+  enum class Case { Whole, Cube, Merged };
+  /// One dispatch for each axis along which the volume's rays march. `frameBuffer` has the frame; `extent` as for March, with a step of 0
+  /// that of the workgroups' threads.
+  void dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Buffer& frameBuffer,
+                glm::ivec2 extent, Case which, const shader::SamplesPush& samples) const;
+  /// Of the last lattice.
+  const TexelView& colorEnergyTexels() const { return gathered_.colorEnergyTexels; }
+  const TexelView& distanceTexels() const { return gathered_.distanceTexels; }
+  const Buffer& frameBuffer() const { return frame_; }
   /// Instead of all samples, marches those at these places of the lattice (x + y times its width), in this order; for tests.
   void recordListed(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, std::span<const std::uint32_t> places);
   void recordStencil(Commands& commands, const shader::GatherFrame& frame);
@@ -41,6 +55,8 @@ class GatherPass {
   /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
   void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
   void recordResampling(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
+  /// The image of the gathered samples.
+  void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
 
   /// The lattice and the sums of the last frame; for validation and tests. The downloads wait.
   const GatherLattice& lattice() const { return lattice_; }
@@ -60,13 +76,13 @@ class GatherPass {
   };
   void setLattice(const shader::GatherFrame& frame);
   void makeAdaptiveRoom(std::uint64_t coarse, std::uint64_t groups);
-  void recordAdaptive(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
+  void recordAdaptive(Commands& commands, const shader::GatherFrame& frame, const March& march);
   shader::SamplesPush recordList(Commands& commands, glm::ivec2 coarse, glm::ivec2 groups);
   void makeRoom(Sums& sums, std::uint64_t samples);
   /// `extent` is that of the samples that are dispatched, unless they are listed.
-  void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent, bool cube,
+  void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent, Case which,
                        const shader::SamplesPush& samples = {.step = 1});
-  void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
+  std::vector<Binding> gatherBindings(const GatherVolume& volume, int axis, const Buffer& frameBuffer) const;
   std::vector<GatherSums> download(const Sums& sums) const;
   std::vector<Binding> sumBindings(const Sums& from, const Sums& to) const;
 

@@ -30,7 +30,15 @@ struct SurroundingLight {
   std::function<std::vector<std::uint16_t>(int light, const GatherVolume& box)> codes;
 };
 
-/// COMPUTE shade_blocks.comp and brick_quads.comp, for the first frame and for every frame whose light or
+/// Another volume between a volume and its lights.
+struct ShadowingVolume {
+  const LightPass* lights;  ///< prepared for the frame
+  bool scalars;             ///< whether its rays are swept through scalars
+  glm::ivec3 dimensions;
+  glm::dmat4 indexToWorld;
+};
+
+/// COMPUTE other_depths.comp, shade_blocks.comp and brick_quads.comp, for the first frame and for every frame whose light or
 /// axes differ from those of the previous one. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
@@ -48,6 +56,7 @@ class GatherVolume {
     const ScatteringSolver* scattered;  ///< solved for the frame, for the whole volume; null without such light
     std::array<bool, 3> axes;  ///< axes along which rays march
     std::uint64_t keptQuadBytes = 0;  ///< quads of other axes are kept for later frames up to so many bytes
+    std::span<const ShadowingVolume> others = {};  ///< always the same ones
   };
   /// Whether light is evaluated at the samples: from the rays of few lights, and what was scattered before. With more lights, or with
   /// shadows from the table, shading is per voxel.
@@ -132,6 +141,7 @@ class GatherVolume {
   void makeSources();
   void prepareSampled(const Lighting* lighting);
   void describeLights(shader::GatherFrame& frame) const;
+  glm::dmat4 toMedium(const ScatteringSolver& scattered) const;
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
   void makeRoom(Quads& quads, const std::array<bool, 3>& axes);
   QuadStore makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const;
@@ -147,6 +157,8 @@ class GatherVolume {
   void dropLightCodes();
   void recordLightCodes(Commands& commands, const Shading& shading);
   void recordLightDepths(Commands& commands, const Shading& shading, int level);
+  void recordShadows(Commands& commands, const Shading& shading);
+  void recordOtherDepths(Commands& commands, const ShadowingVolume& other, const Buffer& constants, int level);
   void recordLightQuads(Commands& commands, int axis);
   void recordGradients(Commands& commands);
 
@@ -182,6 +194,7 @@ class GatherVolume {
   glm::dvec3 deltaScale_{1.0};          ///< factor of the extinction that is left, as what is scattered forwards goes on
   /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light.
   std::array<Buffer, shader::kMaxSampleLights> lightCodes_;
+  std::vector<Buffer> others_;  ///< shader::OtherVolume of Shading::others
   std::uint32_t lightLevels_ = 0;
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
   TexelView gradientTexels_;  ///< of gradients_, unless quads are in pieces

@@ -175,12 +175,15 @@ void ScatteringSolver::solve(const Lighting& lighting, std::vector<StageTime>& t
   ++version_;
 }
 
-shader::ScatteredGrid ScatteringSolver::onDevice() const {
+shader::ScatteredGrid ScatteringSolver::onDevice(const glm::dmat4& toMedium) const {
   FV_CHECK_EQ(solved_.has_value(), true);
   const PhaseSplit split = splitPhase(*solved_);
+  const double perVoxel = 1.0 / double(medium().grid().edge);
+  const glm::dmat3 linear(toMedium);
   return {.texels = addressWords(texelBuffer_.address()),
           .cells = medium().grid().cells,
-          .perVoxel = 1.0f / float(medium().grid().edge),
+          .toCells = perVoxel * linear,
+          .firstCell = perVoxel * (glm::dvec3(toMedium[3]) - linear * glm::dvec3(0.5) + 0.5) - 0.5,
           .share = float(1.0 - split.forward),
           .flux = float(3.0 * split.g),
           .moments = split.g != 0.0 ? 4 : 1};

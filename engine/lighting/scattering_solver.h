@@ -39,7 +39,8 @@ class ScatteringSolver {
 
   /// vec4: J of each cell, with a phase function followed by the flux along x, y and z (rgb).
   const TexelView& texels() const { return texels_; }
-  shader::ScatteredGrid onDevice() const;
+  /// For look-ups at positions in an index space, which `toMedium` takes to that of the medium.
+  shader::ScatteredGrid onDevice(const glm::dmat4& toMedium = glm::dmat4(1.0)) const;
   const ScatteringMedium& medium() const { return media_.front(); }
   /// deltaScaleOf() the light.
   const glm::dvec3& deltaScale() const { return deltaScale_; }

@@ -5,11 +5,13 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/reference/merged_march.h"
 #include "engine/reference/ray_march.h"
 
 namespace freevoxels {
@@ -28,51 +30,46 @@ struct PixelMean {
 
 class Sampler {
  public:
-  Sampler(const Volume& volume, const Classification& classification, const Camera& camera, const OracleSettings& settings,
-          const Progress& progress)
+  /// The sum along the ray of a position on the image, in pixels.
+  using Ray = std::function<RaySum(glm::dvec2)>;
+  Sampler(const OracleSettings& settings, int firstSamples, Ray ray, const Progress& progress)
       : settings_(settings),
+        firstSamples_(firstSamples),
+        ray_(std::move(ray)),
         progress_(progress),
-        field_(volume, classification, progress),
-        rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
-        indexToWorld_(volume.indexToWorld),
-        light_(settings.lighting ? std::make_unique<LightMarch>(field_, volume, classification, *settings.lighting, progress) : nullptr),
         pixels_(std::size_t(settings.size.x) * std::size_t(settings.size.y)) {}
 
   Oracle run();
 
  private:
-  int firstSamples() const;
   PixelMean sample(std::size_t pixel, int samples) const;
   void sampleAll(const std::vector<std::size_t>& pixels, int samples);
   std::vector<std::size_t> unsettled(const std::vector<std::size_t>& sampled) const;
   Image image() const;
 
-  const OracleSettings settings_;
+  const OracleSettings& settings_;
+  const int firstSamples_;
+  const Ray ray_;
   const Progress& progress_;
-  const ReferenceField field_;
-  const PixelRays rays_;
-  const glm::dmat3 indexToWorld_;
-  const std::unique_ptr<LightMarch> light_;  ///< null without lighting
   std::vector<PixelMean> pixels_;
 };
 
 /// The number of rays along an edge of a pixel for which neighbouring rays are at most a voxel apart, at the
 /// far end of the volume, where they are farthest apart.
-int Sampler::firstSamples() const {
+int firstSamplesOf(const Volume& volume, const PixelRays& rays, const OracleSettings& settings) {
   double farthest = 0.0;
-  const glm::dmat3 toWorld(indexToWorld_);
-  const glm::dvec3 middle =
-      rays_.direction + 0.5 * settings_.size.x * rays_.directionX + 0.5 * settings_.size.y * rays_.directionY;
+  const glm::dmat3 toWorld(volume.indexToWorld);
+  const glm::dvec3 middle = rays.direction + 0.5 * settings.size.x * rays.directionX + 0.5 * settings.size.y * rays.directionY;
   const glm::dvec3 axis = toWorld * middle / glm::length(toWorld * middle);
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
-    const glm::dvec3 index = side * glm::dvec3(field_.dimensions() + 1) - 1.0;
-    farthest = std::max(farthest, glm::dot(toWorld * (index - rays_.origin), axis));
+    const glm::dvec3 index = side * glm::dvec3(volume.dimensions + 1) - 1.0;
+    farthest = std::max(farthest, glm::dot(toWorld * (index - rays.origin), axis));
   }
-  const double apart = std::max(glm::length(rays_.originX + farthest * rays_.directionX),
-                                glm::length(rays_.originY + farthest * rays_.directionY));
+  const double apart =
+      std::max(glm::length(rays.originX + farthest * rays.directionX), glm::length(rays.originY + farthest * rays.directionY));
   const double wanted = std::clamp(std::ceil(apart), double(kFewestSamples), double(kMaxFirstSamples));
-  return std::min(int(std::bit_ceil(unsigned(wanted))), settings_.maximumSamples / 2);
+  return std::min(int(std::bit_ceil(unsigned(wanted))), settings.maximumSamples / 2);
 }
 
 PixelMean Sampler::sample(std::size_t pixel, int samples) const {
@@ -82,14 +79,7 @@ PixelMean Sampler::sample(std::size_t pixel, int samples) const {
   for (int j = 0; j < samples; ++j)
     for (int i = 0; i < samples; ++i) {
       const glm::dvec2 at = corner + (glm::dvec2(i, j) + 0.5) / double(samples);
-      MarchedRay ray;
-      ray.origin = rays_.origin + at.x * rays_.originX + at.y * rays_.originY;
-      ray.direction = rays_.direction + at.x * rays_.directionX + at.y * rays_.directionY;
-      const glm::dvec3 inWorld = indexToWorld_ * ray.direction;
-      ray.worldLength = glm::length(inWorld);
-      ray.worldDirection = inWorld / ray.worldLength;
-      ray.distance = settings_.depth;
-      const RaySum sum = marchRay(field_, ray, settings_.step, light_.get());
+      const RaySum sum = ray_(at);
       mean.color += glm::dvec4(sum.color, sum.opacity);
       mean.distance += sum.distance;
     }
@@ -137,7 +127,7 @@ Oracle Sampler::run() {
   Oracle oracle;
   std::vector<std::size_t> pixels(pixels_.size());
   for (std::size_t i = 0; i < pixels.size(); ++i) pixels[i] = i;
-  for (int samples = firstSamples(); samples <= settings_.maximumSamples && !pixels.empty(); samples *= 2) {
+  for (int samples = firstSamples_; samples <= settings_.maximumSamples && !pixels.empty(); samples *= 2) {
     sampleAll(pixels, samples);
     oracle.rays += std::uint64_t(pixels.size()) * std::uint64_t(samples) * std::uint64_t(samples);
     if (oracle.samples > 0) pixels = unsettled(pixels);
@@ -170,7 +160,36 @@ Oracle renderOracle(const Volume& volume, const Classification& classification, 
   FV_CHECK_LT(0, settings.size.y);
   FV_CHECK_LT(0.0, settings.step);
   FV_CHECK_LE(2 * kFewestSamples, settings.maximumSamples);
-  return Sampler(volume, classification, camera, settings, progress).run();
+  const ReferenceField field(volume, classification, progress);
+  const PixelRays rays = pixelRays(camera, settings.size, volume.indexToWorld);
+  std::unique_ptr<LightMarch> light;  // null without lighting
+  if (settings.lighting) light = std::make_unique<LightMarch>(field, volume, classification, *settings.lighting, progress);
+  const glm::dmat3 toWorld(volume.indexToWorld);
+  const auto sum = [&](glm::dvec2 at) {
+    MarchedRay ray;
+    ray.origin = rays.origin + at.x * rays.originX + at.y * rays.originY;
+    ray.direction = rays.direction + at.x * rays.directionX + at.y * rays.directionY;
+    const glm::dvec3 inWorld = toWorld * ray.direction;
+    ray.worldLength = glm::length(inWorld);
+    ray.worldDirection = inWorld / ray.worldLength;
+    ray.distance = settings.depth;
+    return marchRay(field, ray, settings.step, light.get());
+  };
+  return Sampler(settings, firstSamplesOf(volume, rays, settings), sum, progress).run();
+}
+
+Oracle renderOracle(std::span<const PlacedMedium> volumes, const Camera& camera, const OracleSettings& settings, const Progress& progress) {
+  if (volumes.size() == 1) return renderOracle(*volumes.front().volume, *volumes.front().classification, camera, settings, progress);
+  const MergedMarch march(volumes, settings.lighting, 0.5 * settings.step, progress);
+  int samples = 0;
+  for (const PlacedMedium& placed : volumes)
+    samples = std::max(samples, firstSamplesOf(*placed.volume, pixelRays(camera, settings.size, placed.volume->indexToWorld), settings));
+  const PixelRays rays = pixelRays(camera, settings.size, glm::dmat4(1.0));
+  const auto sum = [&](glm::dvec2 at) {
+    return march.sum({.origin = rays.origin + at.x * rays.originX + at.y * rays.originY,
+                      .direction = rays.direction + at.x * rays.directionX + at.y * rays.directionY});
+  };
+  return Sampler(settings, samples, sum, progress).run();
 }
 
 }  // namespace freevoxels

@@ -9,12 +9,14 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <optional>
+#include <span>
 
 #include "engine/core/stages.h"
 #include "engine/image/image.h"
 #include "engine/scene/camera.h"
 #include "engine/scene/lighting.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/scattering_medium.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -45,6 +47,11 @@ struct Oracle {
 /// the eye is drawn. The result does not depend on the number of threads.
 Oracle renderOracle(const Volume& volume, const Classification& classification, const Camera& camera,
                     const OracleSettings& settings, const Progress& progress = {});
+
+/// Of one or several volumes, which attenuate and shadow each other. Those of several are marched in steps of half of `step`
+/// (merged_march.h).
+Oracle renderOracle(std::span<const PlacedMedium> volumes, const Camera& camera, const OracleSettings& settings,
+                    const Progress& progress = {});
 
 /// Bytes of memory that the oracle needs for every pixel and for every voxel, including its scalar, of a
 /// volume that is full and many bricks long in all three directions. The other constants are needed in

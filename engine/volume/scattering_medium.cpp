@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <utility>
 
 namespace freevoxels {
 
@@ -46,6 +47,28 @@ int edgeFor(glm::ivec3 dimensions, std::uint64_t most, int unit) {
   int edge = unit;
   while (CellGrid(dimensions, edge).count() > most) edge += unit;
   return edge;
+}
+
+/// The size and the place of an index space along the axes of the world that holds all volumes, with voxels as small as their smallest.
+std::pair<glm::ivec3, glm::dmat4> cellSpaceOf(std::span<const PlacedMedium> volumes) {
+  constexpr double kMost = 1 << 20;  // along an axis
+  glm::dvec3 low(std::numeric_limits<double>::max()), high(std::numeric_limits<double>::lowest());
+  double voxel = std::numeric_limits<double>::max();
+  for (const PlacedMedium& placed : volumes) {
+    const Volume& volume = *placed.volume;
+    voxel = std::min(voxel, volume.voxelSize());
+    for (int corner = 0; corner < 8; ++corner) {
+      const glm::dvec3 side(corner & 1, corner >> 1 & 1, corner >> 2);
+      const glm::dvec3 place(volume.indexToWorld * glm::dvec4(side * glm::dvec3(volume.dimensions) - 0.5, 1.0));
+      low = glm::min(low, place);
+      high = glm::max(high, place);
+    }
+  }
+  const glm::dvec3 extent = high - low;
+  const double edge = std::max(voxel, std::max({extent.x, extent.y, extent.z}) / kMost);
+  glm::dmat4 toWorld(edge);
+  toWorld[3] = glm::dvec4(low + 0.5 * edge, 1.0);
+  return {glm::max(glm::ivec3(glm::ceil(extent / edge - 1e-9)), glm::ivec3(1)), toWorld};
 }
 
 bool isGreyColor(const glm::dvec3& color) {
@@ -102,6 +125,49 @@ void ScatteringMedium::add(const Volume& part, glm::ivec3 first, const Classific
           directRow[x / directGrid_.edge] += directShare * extinction;
         }
       }
+  });
+}
+
+ScatteringMedium::ScatteringMedium(std::span<const PlacedMedium> volumes) : ScatteringMedium(cellSpaceOf(volumes)) {
+  for (const PlacedMedium& placed : volumes) addPlaced(placed);
+}
+
+/// Averages the voxels at points of each direct cell, at most a voxel apart where kMostPoints allows.
+void ScatteringMedium::addPlaced(const PlacedMedium& placed) {
+  constexpr int kMostPoints = 4;  // along the edge of a direct cell
+  const Volume& volume = *placed.volume;
+  const Classification& classification = *placed.classification;
+  const MediumTable table(volume, classification);
+  const bool hasGrid = volume.albedo.has_value() && !classification.transferFunction;
+  const bool emits = classification.emission && volume.temperature;
+  const glm::dmat4 toVolume = glm::inverse(volume.indexToWorld) * indexToWorld_;
+  const double cellEdge = directGrid_.edge * glm::length(glm::dvec3(indexToWorld_[0]));
+  const int points = std::clamp(int(std::ceil(cellEdge / volume.voxelSize())), 1, kMostPoints), ratio = grid_.edge / directGrid_.edge;
+  const double directShare = 1.0 / (double(points) * points * points), share = directShare / (double(ratio) * ratio * ratio);
+  const auto addPoint = [&](glm::ivec3 voxel, Cell& cell, double& direct) {
+    if (emits) cell.emission += share * emittedLight(*classification.emission, volume.temperature->values.at(voxel));
+    const double extinction = table.extinctionAt(volume.scalars.at(voxel));
+    if (extinction == 0.0) return;
+    const glm::dvec3 albedo =
+        hasGrid ? glm::dvec3(albedoOf(classification, *volume.albedo, voxel)) : table.colorAt(volume.scalars.at(voxel));
+    cell.extinction += share * extinction;
+    cell.scattering += share * extinction * albedo;
+    direct += directShare * extinction;
+  };
+  tbb::parallel_for(0, grid_.cells.z, [&](int plane) {
+    glm::ivec3 direct;
+    for (direct.z = plane * ratio; direct.z < std::min((plane + 1) * ratio, directGrid_.cells.z); ++direct.z)
+      for (direct.y = 0; direct.y < directGrid_.cells.y; ++direct.y)
+        for (direct.x = 0; direct.x < directGrid_.cells.x; ++direct.x)
+          for (int i = 0; i < points * points * points; ++i) {
+            const glm::dvec3 part = (glm::dvec3(i % points, i / points % points, i / (points * points)) + 0.5) / double(points);
+            const glm::dvec3 place((toVolume * glm::dvec4((glm::dvec3(direct) + part) * double(directGrid_.edge) - 0.5, 1.0)));
+            const glm::dvec3 nearest = glm::floor(place + 0.5);
+            if (glm::any(glm::lessThan(nearest, glm::dvec3(0.0))) ||
+                glm::any(glm::greaterThanEqual(nearest, glm::dvec3(volume.dimensions))))
+              continue;
+            addPoint(glm::ivec3(nearest), cells_[grid_.index(direct / ratio)], direct_[directGrid_.index(direct)]);
+          }
   });
 }
 

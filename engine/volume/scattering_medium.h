@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <span>
+#include <utility>
 #include <vector>
 
 #include "engine/scene/lighting.h"
@@ -30,6 +31,12 @@ struct CellGrid {
   bool operator==(const CellGrid&) const = default;
 };
 
+/// One of several volumes of a medium.
+struct PlacedMedium {
+  const Volume* volume;
+  const Classification* classification;
+};
+
 /// What cells hold on average: sums that are filled part by part, so that a volume need not be in memory as a whole.
 class ScatteringMedium {
  public:
@@ -42,6 +49,9 @@ class ScatteringMedium {
   ScatteringMedium(glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
   /// Of a whole volume.
   ScatteringMedium(const Volume& volume, const Classification& classification);
+
+  /// Of several volumes, wherever they are: cells of an index space along the axes of the world.
+  explicit ScatteringMedium(std::span<const PlacedMedium> volumes);
 
   /// Adds the voxels of a box of the volume, which begins at voxel `first` of it. Each voxel must be added once.
   void add(const Volume& part, glm::ivec3 first, const Classification& classification);
@@ -71,6 +81,9 @@ class ScatteringMedium {
   bool isGrey() const;
 
  private:
+  explicit ScatteringMedium(const std::pair<glm::ivec3, glm::dmat4>& space) : ScatteringMedium(space.first, space.second) {}
+  void addPlaced(const PlacedMedium& placed);
+
   glm::dmat4 indexToWorld_;
   CellGrid grid_, directGrid_;
   std::vector<Cell> cells_;

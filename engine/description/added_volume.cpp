@@ -1,0 +1,171 @@
+#include "engine/description/added_volume.h"
+
+#include <fmt/ranges.h>
+
+#include <algorithm>
+#include <map>
+#include <mutex>
+#include <nlohmann/json.hpp>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/core/json_file.h"
+#include "engine/core/nearest_name.h"
+#include "engine/description/scene_fields.h"
+#include "engine/description/scene_json.h"
+#include "engine/description/text_values.h"
+#include "engine/octree/volume_limits.h"
+
+namespace freevoxels {
+
+namespace {
+
+using Json = nlohmann::json;
+
+constexpr const char* kVolume = "volume";
+constexpr const char* kTransform = "transform";
+constexpr const char* kForm = "FILE[,KEY=VALUE...]";
+/// Numbers of a transform: of an offset; of the rows of a matrix of 3 x 4.
+constexpr std::size_t kOffsetNumbers = 3, kMatrixNumbers = 12;
+
+/// The fields that a volume has for itself.
+std::vector<const SceneField*> ownFields() {
+  std::vector<const SceneField*> own;
+  for (const SceneField& field : sceneFields())
+    if (field.section == "input" || field.section == "classification" || field.section == "emission" || field.name == "shading")
+      own.push_back(&field);
+  return own;
+}
+
+const SceneField& ownField(const std::string& key) {
+  std::vector<std::string> names{kTransform};
+  for (const SceneField* field : ownFields()) {
+    if (field->name == key) return *field;
+    names.push_back(field->name);
+  }
+  const std::string meant = nearestName(key, names);
+  fail(ErrorKind::Usage, "{} knows no key '{}'{}", Parameter("add"), key, meant.empty() ? "" : "; did you mean '" + meant + "'?");
+}
+
+glm::dmat4 readTransform(const std::string& text) {
+  const bool isOffset = std::ranges::count(text, ',') < std::ptrdiff_t(kOffsetNumbers);
+  const auto n = readNumbers({.name = fmt::format("{} {}", Parameter("add"), kTransform),
+                              .form = "an offset X,Y,Z or the 12 numbers of a matrix of 3 rows and 4 columns",
+                              .count = isOffset ? kOffsetNumbers : kMatrixNumbers},
+                             text);
+  if (isOffset) {
+    glm::dmat4 offset(1.0);
+    offset[3] = {n[0], n[1], n[2], 1.0};
+    return offset;
+  }
+  glm::dmat4 matrix(1.0);
+  for (int row = 0; row < 3; ++row)
+    for (int column = 0; column < 4; ++column) matrix[column][row] = n[std::size_t(4 * row + column)];
+  if (!(std::abs(glm::determinant(glm::dmat3(matrix))) > 0.0))
+    fail(ErrorKind::Usage, "{} {} flattens the volume: give a matrix that can be inverted", Parameter("add"), kTransform);
+  return matrix;
+}
+
+/// What an added volume has, as a scene of its own.
+SceneDescription sceneOf(const AddedVolume& added) {
+  return {.input = added.input, .classification = added.classification, .emission = added.emission, .lighting = {.shading = added.shading}};
+}
+
+Json objectOf(const std::string& text) {
+  if (isInlineJson(text)) {
+    Json object = parseJsonQuietly(text);
+    if (!object.is_object()) fail(ErrorKind::Usage, "{} is no JSON: '{}'", Parameter("add"), text);
+    return object;
+  }
+  const std::size_t comma = std::min(text.find(','), text.size());
+  Json object = {{kVolume, text.substr(0, comma)}};
+  if (comma + 1 < text.size())
+    for (const auto& [key, value] : readKeys(fmt::format("{}", Parameter("add")), kForm, text.substr(comma + 1))) object[key] = value;
+  return object;
+}
+
+/// A transform's text for a list of numbers, or of such lists.
+std::string numbersOf(const Json& value) {
+  if (value.is_string()) return value.get<std::string>();
+  if (!value.is_array()) return value.dump();
+  std::vector<std::string> words;
+  for (const Json& one : value) words.push_back(numbersOf(one));
+  return fmt::format("{}", fmt::join(words, ","));
+}
+
+std::shared_ptr<const VolumeSource> readSource(const AddedVolume& added, const Progress& progress) {
+  static std::mutex mutex;
+  static std::map<std::string, std::weak_ptr<const VolumeSource>> known;
+  AddedVolume file = added;  // what decides which grids are read is in the text, too
+  const std::string text = addedVolumeText(file);
+  const std::lock_guard lock(mutex);
+  if (std::shared_ptr<const VolumeSource> there = known[text].lock()) return there;
+  Volume volume = sceneOf(added).readVolume(kMaxNumberedVoxels, 0, progress);
+  if (added.transform) volume.indexToWorld = *added.transform * volume.indexToWorld;
+  auto source = std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(std::move(volume)));
+  known[text] = source;
+  return source;
+}
+
+}  // namespace
+
+AddedVolume readAddedVolume(const std::string& text) {
+  SceneDescription scene;
+  AddedVolume added;
+  const Json object = objectOf(text);
+  for (const auto& [key, value] : object.items()) {
+    std::string name = key;
+    std::ranges::replace(name, '_', '-');
+    if (name == kTransform) {
+      added.transform = readTransform(numbersOf(value));
+      continue;
+    }
+    const SceneField& field = ownField(name);
+    field.read(scene, fieldTexts(field, value, "", fmt::format("{} {}", Parameter("add"), name)));
+  }
+  if (scene.input.volume.empty())
+    fail(ErrorKind::Usage, "{} '{}' names no volume: begin with a file, or give a {}", Parameter("add"), text, kVolume);
+  added.input = scene.input;
+  added.classification = scene.classification;
+  added.emission = scene.emission;
+  added.shading = scene.lighting.shading;
+  return added;
+}
+
+std::string addedVolumeText(const AddedVolume& added) {
+  const SceneDescription scene = sceneOf(added);
+  nlohmann::ordered_json object = nlohmann::ordered_json::object();
+  for (const SceneField* field : ownFields())
+    for (const std::string& text : field->texts(scene)) object[field->name] = fieldJson(*field, text, std::nullopt);
+  if (added.transform) {
+    object[kTransform] = nlohmann::ordered_json::array();
+    for (int row = 0; row < 3; ++row)
+      for (int column = 0; column < 4; ++column) object[kTransform].push_back((*added.transform)[column][row]);
+  }
+  return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
+}
+
+Json withFiles(Json added, const std::function<std::string(const std::string&)>& change) {
+  if (added.is_string()) return change(added.get<std::string>());
+  if (!added.is_object()) return added;
+  for (const auto& [key, value] : added.items())
+    if (value.is_string() && (key == kVolume || key == "transfer-function" || key == "transfer_function"))
+      value = change(value.get<std::string>());
+  return added;
+}
+
+std::vector<SceneVolume> openAddedVolumes(const SceneDescription& scene, const Progress& progress) {
+  std::vector<SceneVolume> volumes;
+  for (const AddedVolume& added : scene.added) {
+    SceneVolume opened{.source = readSource(added, progress), .classification = {}};
+    const Volume& volume = *known(opened.source);
+    opened.classification = sceneOf(added).resolveClassification(volume);
+    LightingDescription lighting = scene.lighting;
+    if (added.shading) lighting.shading = added.shading;
+    opened.surface = lighting.surfaceOf(volume, opened.classification);
+    volumes.push_back(std::move(opened));
+  }
+  return volumes;
+}
+
+}  // namespace freevoxels

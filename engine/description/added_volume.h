@@ -1,0 +1,25 @@
+#pragma once
+// The volumes of a scene besides its first one.
+
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/description/scene_description.h"
+
+namespace freevoxels {
+
+/// From a text "FILE[,KEY=VALUE...]" or such an object as JSON, {"volume": FILE, KEY: VALUE, ...}. Fails with ErrorKind::Usage.
+AddedVolume readAddedVolume(const std::string& text);
+/// The object as JSON, which readAddedVolume() takes.
+std::string addedVolumeText(const AddedVolume& added);
+/// The same JSON, or a name of a volume, with names of files changed by `change`.
+nlohmann::json withFiles(nlohmann::json added, const std::function<std::string(const std::string&)>& change);
+
+/// Reads the volumes and classifies them. A volume that somebody still holds is not read again. Fails as SceneDescription::readVolume().
+std::vector<SceneVolume> openAddedVolumes(const SceneDescription& scene, const Progress& progress = {});
+
+}  // namespace freevoxels

@@ -1,0 +1,182 @@
+#include "engine/gathering/merged_pass.h"
+
+#include <algorithm>
+#include <cmath>
+
+#include "embedded/merge_rays.h"
+#include "embedded/merge_sums.h"
+#include "engine/core/error.h"
+#include "engine/vulkan/commands.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// Thickness of slabs, in edges of the smallest voxels.
+constexpr double kSlabVoxels = 1.0;
+/// Rays are marched in ranges for which the slabs take about this.
+constexpr std::uint64_t kSlabBytes = 128u << 20;
+constexpr int kTile = shader::kGatherTile;
+
+/// The components of an affine function of the position p = (1, x, y), one by one.
+void setAffine(glm::vec3 (&rows)[3], glm::dvec3 at, glm::dvec3 x, glm::dvec3 y) {
+  for (int c = 0; c < 3; ++c) rows[c] = glm::dvec3(at[c], x[c], y[c]);
+}
+
+SlabExtent extentOf(const PixelRays& rays, const DeviceVolume& volume) {
+  const glm::dmat3 toPixel = rays.indexToPixel(), linear(volume.indexToWorld);
+  SlabExtent extent{.begin = std::numeric_limits<double>::max(), .end = 0.0};
+  for (int corner = 0; corner < 8; ++corner) {
+    const glm::dvec3 place =
+        glm::mix(glm::dvec3(-1.0), glm::dvec3(volume.layout.dimensions), glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+    const double distance = std::max((toPixel * (place - rays.origin)).z, 0.0);
+    extent.begin = std::min(extent.begin, distance);
+    extent.end = std::max(extent.end, distance);
+  }
+  extent.thickness = kSlabVoxels * std::min({glm::length(linear[0]), glm::length(linear[1]), glm::length(linear[2])});
+  return extent;
+}
+
+}  // namespace
+
+SlabPlan planSlabs(std::span<const SlabExtent> extents) {
+  FV_CHECK_LE(extents.size(), std::size_t(shader::kMaxMerged));
+  std::vector<double> borders;
+  for (const SlabExtent& extent : extents) borders.insert(borders.end(), {extent.begin, extent.end});
+  std::ranges::sort(borders);
+  std::vector<SlabExtent> stretches;
+  double wanted = 0.0;
+  for (std::size_t i = 0; i + 1 < borders.size(); ++i) {
+    SlabExtent stretch{.begin = borders[i], .end = borders[i + 1], .thickness = std::numeric_limits<double>::max()};
+    for (const SlabExtent& extent : extents)
+      if (extent.begin <= stretch.begin && stretch.end <= extent.end) stretch.thickness = std::min(stretch.thickness, extent.thickness);
+    if (!(stretch.begin < stretch.end) || stretch.thickness == std::numeric_limits<double>::max()) continue;
+    wanted += (stretch.end - stretch.begin) / stretch.thickness + 1.0;
+    stretches.push_back(stretch);
+  }
+  const double thicker = std::max(wanted / (kMaxSlabs - double(stretches.size())), 1.0);
+  SlabPlan plan;
+  for (const SlabExtent& stretch : stretches) {
+    const double length = stretch.end - stretch.begin;
+    const int count = std::max(int(std::ceil(length / (thicker * stretch.thickness))), 1);
+    plan.intervals.push_back(
+        {.begin = float(stretch.begin), .end = float(stretch.end), .perUnit = float(count / length), .first = float(plan.slabs)});
+    plan.slabs += count;
+  }
+  return plan;
+}
+
+void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Camera& camera) {
+  FV_CHECK_LE(parts.size(), std::size_t(shader::kMaxMerged));
+  shader::MergeFrame merge{.volumes = int(parts.size()), .endTransmittance = parts.front().frame.endTransmittance};
+  std::vector<SlabExtent> extents;
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    const DeviceVolume& volume = *parts[i].onDevice;
+    const glm::ivec2 size = parts[i].frame.size;
+    const PixelRays rays = pixelRays(camera, size, volume.indexToWorld).countedFrom(0.5 * glm::dvec2(size));
+    setAffine(merge.boxes[i].origin, rays.origin, rays.originX, rays.originY);
+    setAffine(merge.boxes[i].direction, rays.direction, rays.directionX, rays.directionY);
+    merge.boxes[i].dimensions = volume.layout.dimensions;
+    extents.push_back(extentOf(rays, volume));
+  }
+  const SlabPlan plan = planSlabs(extents);
+  merge.intervals = int(plan.intervals.size());
+  merge.slabs = slabCount_ = plan.slabs;
+  std::ranges::copy(plan.intervals, merge.interval);
+  tinted_ = std::ranges::any_of(parts, [](const Part& part) { return part.volume->isTinted(); });
+  if (merge_.bytes() == 0) merge_ = Buffer(device_, sizeof(merge), MemoryUse::Device, "volumes of a frame");
+  commands.update(merge_, merge);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    if (i == frames_.size())
+      frames_.emplace_back(device_, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
+    commands.update(frames_[i], parts[i].frame);
+  }
+  pass_.begin(commands, parts.front().frame);
+  makeRoom(parts.front().frame);
+}
+
+/// How many rows of a dispatch are marched at a time.
+int MergedPass::rowsOfBand(int columns, int rows, bool listed) const {
+  const std::uint64_t perSlot = std::uint64_t(std::max(slabCount_, 1)) * sizeof(glm::vec4) * (tinted_ ? 2 : 1);
+  const auto most = int(std::clamp<std::uint64_t>(kSlabBytes / (perSlot * std::uint64_t(columns)), 1, std::uint64_t(rows)));
+  return listed ? most : std::max(most / kTile, 1) * kTile;
+}
+
+/// For all dispatches of a frame, before any is recorded.
+void MergedPass::makeRoom(const shader::GatherFrame& frame) {
+  const bool adapts = frame.sampleTolerance > 0.0f;
+  const glm::ivec2 extent = adapts ? (frame.seenExtent + 1) / 2 : frame.seenExtent, groups = (extent + kTile - 1) / kTile;
+  const int columns = groups.x * kTile, listColumns = columns * kTile;
+  std::uint64_t slots = std::uint64_t(columns) * std::uint64_t(rowsOfBand(columns, extent.y, false));
+  // Of a list of at most three samples for each coarse one.
+  if (adapts) slots = std::max(slots, std::uint64_t(listColumns) * std::uint64_t(rowsOfBand(listColumns, 4 * extent.y, true)));
+  makeRoom(slots);
+}
+
+void MergedPass::makeRoom(std::uint64_t slots) {
+  const std::uint64_t bytes = slots * std::uint64_t(std::max(slabCount_, 1)) * sizeof(glm::vec4);
+  if (rays_.bytes() < slots * sizeof(shader::MergedRay))
+    rays_ = Buffer(device_, slots * sizeof(shader::MergedRay), MemoryUse::Device, "rays of several volumes");
+  if (slabs_.bytes() < bytes) {
+    slabs_ = {};  // free the old buffer before allocating the new one
+    slabs_ = Buffer(device_, bytes, MemoryUse::Device, "slabs");
+  }
+  if (tinted_ && depths_.bytes() < bytes) {
+    depths_ = {};
+    depths_ = Buffer(device_, bytes, MemoryUse::Device, "optical depths of slabs");
+  }
+}
+
+/// Without a list `extent` is in samples, with one in rows of its workgroups.
+void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples) {
+  shader::SamplesPush push = samples;
+  push.merge = addressWords(merge_.address());
+  push.rays = addressWords(rays_.address());
+  push.slabs = addressWords(slabs_.address());
+  push.depths = addressWords(depths_.bytes() > 0 ? depths_.address() : 0);
+  const Buffer& frame = pass_.frameBuffer();
+  const glm::ivec3 threads(extent, 1);
+  commands.dispatch(makeComputePipeline(device_, shaders::merge_rays, {tinted_}), std::array<Binding, 1>{&frame}, push, threads);
+  commands.barrier(kComputeStage, kComputeStage);
+  for (std::size_t i = 0; i < parts.size(); ++i) {
+    push.volume = int(i);
+    for (const GatherPass::Case which : {GatherPass::Case::Whole, GatherPass::Case::Merged})
+      pass_.dispatch(commands, *parts[i].volume, parts[i].frame, frames_[i], extent, which, push);
+    commands.barrier(kComputeStage, kComputeStage);
+  }
+  const std::array<Binding, 3> sums{&frame, &pass_.colorEnergyTexels(), &pass_.distanceTexels()};
+  commands.dispatch(makeComputePipeline(device_, shaders::merge_sums, {tinted_}), sums, push, threads);
+  commands.barrier(kComputeStage, kComputeStage);
+}
+
+/// Marches samples in ranges of rows, of samples or of workgroups of the list.
+void MergedPass::march(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples) {
+  const bool listed = samples.step == 0;
+  const int columns = listed ? samples.groupsOfARow * kTile * kTile : (extent.x + kTile - 1) / kTile * kTile;
+  const int rows = listed ? samples.rowsOfARange * shader::kSampleRanges : extent.y;
+  const int inBand = rowsOfBand(columns, rows, listed);
+  FV_CHECK_LE(std::uint64_t(columns) * std::uint64_t(inBand) * sizeof(shader::MergedRay), rays_.bytes());
+  for (int first = 0; first < rows; first += inBand) {
+    shader::SamplesPush push = samples;
+    push.firstRow = first;
+    push.columns = columns;
+    push.slots = columns * inBand;
+    const int count = std::min(inBand, rows - first);
+    marchBand(commands, parts, listed ? glm::ivec2(samples.groupsOfARow * kTile, count * kTile) : glm::ivec2(extent.x, count), push);
+  }
+}
+
+void MergedPass::recordSamples(Commands& commands, std::span<const Part> parts, const Camera& camera) {
+  begin(commands, parts, camera);
+  commands.beginPass("gather");
+  pass_.recordSamples(commands, parts.front().frame, [&](Commands& recording, glm::ivec2 extent, const shader::SamplesPush& samples) {
+    march(recording, parts, extent, samples);
+  });
+}
+
+void MergedPass::record(Commands& commands, std::span<const Part> parts, const Camera& camera, const FrameTargets& targets) {
+  recordSamples(commands, parts, camera);
+  pass_.recordPixels(commands, parts.front().frame, true, targets);
+}
+
+}  // namespace freevoxels

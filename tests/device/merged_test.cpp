@@ -1,0 +1,94 @@
+// Several volumes in one image: against the oracle, which marches all of them, against their own images, and whatever their order.
+
+#include <array>
+#include <cmath>
+
+#include "engine/gathering/merged_pass.h"
+#include "engine/renderer.h"
+#include "engine/validation/stage_frames.h"
+#include "tests/device/gather_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+/// A scene of volumes in memory.
+struct Media {
+  std::vector<std::shared_ptr<const Volume>> volumes;
+  std::vector<Classification> classifications;
+
+  void add(Volume volume, const Classification& classification) {
+    volumes.push_back(std::make_shared<const Volume>(std::move(volume)));
+    classifications.push_back(classification);
+  }
+  std::vector<SceneVolume> scene(bool reversed = false) const {
+    std::vector<SceneVolume> all;
+    for (std::size_t k = 0; k < volumes.size(); ++k) {
+      const std::size_t i = reversed ? volumes.size() - 1 - k : k;
+      all.push_back({.source = std::make_shared<const VolumeInMemory>(volumes[i]), .classification = classifications[i]});
+    }
+    return all;
+  }
+  std::vector<PlacedMedium> placed() const {
+    std::vector<PlacedMedium> all;
+    for (std::size_t i = 0; i < volumes.size(); ++i) all.push_back({volumes[i].get(), &classifications[i]});
+    return all;
+  }
+};
+
+glm::dmat4 turned(double angle, glm::dvec3 offset, double scale = 1.0) {
+  const double c = std::cos(angle), s = std::sin(angle);
+  glm::dmat4 matrix(1.0);
+  matrix[0] = {scale * c, 0.3 * scale * s, -scale * s, 0.0};
+  matrix[1] = {0.0, scale, 0.2 * scale, 0.0};
+  matrix[2] = {scale * s, -0.1 * scale, scale * c, 0.0};
+  matrix[3] = glm::dvec4(offset, 1.0);
+  return matrix;
+}
+
+class MergedTest : public GatherTest {
+ protected:
+  /// Fog of 40³ and of 29x23x31 voxels through each other, of other colours and sizes of voxels.
+  static Media twoFogs() {
+    Media media;
+    Volume cloud = makeProcedural("cloud", 40);
+    media.add(cloud, {.densityScale = automaticDensityScale(cloud, 1.5), .albedo = glm::vec3(0.9f, 0.4f, 0.2f)});
+    const glm::ivec3 n(29, 23, 31);
+    Volume ball = makeVolume(n, turned(0.6, {0.1, -0.05, 0.08}, 0.9) * cubeTransform(n), [n](int x, int y, int z) {
+      const glm::dvec3 place = (glm::dvec3(x, y, z) + 0.5) / glm::dvec3(n) - 0.5;
+      return std::max(0.0, 1.0 - 4.0 * glm::dot(place, place)) * (1.0 + 0.3 * std::sin(0.6 * x + 0.4 * z));
+    });
+    media.add(ball, {.densityScale = automaticDensityScale(ball, 1.5), .albedo = glm::vec3(0.2f, 0.5f, 0.9f)});
+    return media;
+  }
+  static Camera viewOf(const Media& media, double aspect = 1.0) { return framingCamera(*media.volumes.front(), 35.0, 25.0, aspect, {}); }
+  static double quality(const Media& media, const Camera& camera, const FrameSettings& settings) {
+    Renderer renderer(device(), media.scene(), {});
+    const Oracle oracle = renderOracle(media.placed(), camera,
+                                       {.size = settings.size, .tolerance = 4e-3, .maximumSamples = 8, .lighting = settings.lighting});
+    return psnr(renderer.render(camera, settings), oracle.image);
+  }
+};
+
+TEST_F(MergedTest, TwoFogsThroughEachOtherMatchTheOracle) {
+  const Media media = twoFogs();
+  EXPECT_GE(quality(media, viewOf(media), gathering({48, 48})), 50.0);
+  EXPECT_GE(quality(media, cameraInside(*media.volumes[0], viewOf(media)), gathering({48, 48})), 45.0);
+}
+
+TEST_F(MergedTest, TwoFogsInALightMatchTheOracle) {
+  const Media media = twoFogs();
+  FrameSettings settings = gathering({40, 40});
+  settings.lighting = Lighting{.lights = {{.place = {0.4, 1.0, 0.3}}}};
+  EXPECT_GE(quality(media, viewOf(media), settings), 40.0);
+}
+
+TEST_F(MergedTest, TheOrderOfVolumesChangesNoBit) {
+  const Media media = twoFogs();
+  FrameSettings settings = gathering({40, 32});
+  settings.lighting = Lighting{.lights = {{.place = {0.4, 1.0, 0.3}}}, .ambient = glm::dvec3(0.2), .scattering = kAllOrders};
+  Renderer one(device(), media.scene(), {}), other(device(), media.scene(true), {});
+  EXPECT_EQ(one.render(viewOf(media), settings).pixels, other.render(viewOf(media), settings).pixels);
+}
+
+}  // namespace
+}  // namespace freevoxels
