@@ -208,7 +208,7 @@ void main() {
   if (any(greaterThanEqual(index, kCube ? frame.cube.extent : frame.seenExtent))) return;
   if (!kCube && push.rays != uvec2(0)) {
     // With other volumes: rays that meet only this one are marched as if there were no others.
-    const uint met = MergedRays(push.rays).values[slotOfThread()].volumes, own = 1u << push.volume;
+    const uint met = MergedRays(push.rays).values[slotOfThread()], own = 1u << push.volume;
     if ((met & own) == 0 || (met == own) == kMerged) return;
   }
   index += kCube ? frame.cube.corner : frame.firstSeen;
@@ -241,7 +241,11 @@ void main() {
   if (!kScalars || kLevels)
     for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
       marchLevel(sums, distanceSum, sampleRay, level, false);
-  if (kMerged) return;
+  if (kMerged) {
+    closeSlab(slotOfThread(), kTinted);
+    EntryCounts(push.counts).values[push.volume * push.slots + slotOfThread()] = entryCount;
+    return;
+  }
   // A ray that ended early becomes opaque: what lies behind its end is taken to have the mean colour of what lies in front.
   const float energy = 1.0 - sums.transmittance;
   const bool complete = !kCube || frame.cube.isLast != 0;

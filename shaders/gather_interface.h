@@ -124,14 +124,16 @@ struct SamplesPush {
   int columns;          // samples of a row that are dispatched, without a list
   int slots;            // number of rays of the dispatch, for which there is room in slabs
   int volume;           // the number of the volume
-  uvec2 merge, rays;    // device addresses: MergeFrame; MergedRay of each slot
-  uvec2 slabs, depths;  // what the volumes have in slabs (merge_slabs.glsl)
+  int slabs;         // number of slabs, and so of entries for which a volume has room
+  uvec2 merge, rays;              // device addresses: MergeFrame; the volumes that the ray of each slot meets, a bit for each;
+  uvec2 entries, counts, depths;  // what the volumes have in slabs (gather_samples.glsl)
 };
 
 // Several volumes in one image (engine/gathering/merged_pass.h). What each has along a ray is added up in slabs: between planes parallel
 // to the image, at equal distances within each interval.
 FV_CONSTANT int kMaxMerged = 32;
 FV_CONSTANT int kMaxSlabIntervals = 2 * kMaxMerged;
+FV_CONSTANT int kMaxSlabs = 1 << 12;
 
 struct MergedBox {
   vec3 origin[3];     // the ray of the position p = (1, x, y) on the image: component c of its origin in index space is origin[c] . p,
@@ -146,16 +148,10 @@ struct SlabInterval {
 };
 
 struct MergeFrame {
-  int volumes, intervals, slabs;
+  int volumes, intervals;
   float endTransmittance;                    // at which rays end
   SlabInterval interval[kMaxSlabIntervals];  // in ascending order
   MergedBox boxes[kMaxMerged];
-};
-
-// A ray of a frame of several volumes.
-struct MergedRay {
-  uint volumes;            // a bit for each volume whose box it meets
-  int firstSlab, endSlab;  // between these are they
 };
 
 // other_depths.comp

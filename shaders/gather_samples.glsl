@@ -8,9 +8,12 @@
 layout(local_size_x = kGatherTile, local_size_y = kGatherTile) in;
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer SampleList { SampleListHead head; uint samples[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer MergeConstants { MergeFrame values; };
-layout(buffer_reference, scalar, buffer_reference_align = 4) buffer MergedRays { MergedRay values[]; };
-// By slab and slot: the light (rgb) that the medium in the slab sends to the eye if nothing dims it, and its optical depth (a).
-layout(buffer_reference, scalar, buffer_reference_align = 16) buffer Slabs { vec4 values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer MergedRays { uint values[]; };
+// What a volume has in the slabs in which it has something, front to back: by number and slot the light (rgb) that the medium in the slab sends to
+// the eye if nothing dims it, and its optical depth (a), whose lowest kSlabBits bits are the number of the slab.
+layout(buffer_reference, scalar, buffer_reference_align = 16) buffer SlabEntries { vec4 values[]; };
+// By volume and slot: the number of entries.
+layout(buffer_reference, scalar, buffer_reference_align = 4) buffer EntryCounts { int values[]; };
 layout(push_constant, scalar) uniform Push { SamplesPush push; };
 
 // The number of this thread's sample in the list, counted from that of the range if `firstRow` is 0.
@@ -43,20 +46,44 @@ float slabAt(float distance) {
   return slab;
 }
 
-// Adds what the medium between two distances has, in equal parts for equal distances: see Slabs. With `tinted` also its optical depth for
-// light, by colour.
+float withSlab(float depth, int slab) { return uintBitsToFloat(floatBitsToUint(depth) & ~uint(kMaxSlabs - 1) | uint(slab)); }
+int slabOf(float depth) { return int(floatBitsToUint(depth) & uint(kMaxSlabs - 1)); }
+float depthOf(float depth) { return uintBitsToFloat(floatBitsToUint(depth) & ~uint(kMaxSlabs - 1)); }
+
+// The place of an entry of the volume that is marched.
+int placeOfEntry(int volume, int number, int slot) { return (volume * push.slabs + number) * push.slots + slot; }
+
+// The slab that the march is in.
+int openSlab = -1, entryCount = 0;
+vec4 openSum = vec4(0.0);
+vec3 openDepths = vec3(0.0);
+
+void closeSlab(int slot, bool tinted) {
+  if (openSum != vec4(0.0)) {
+    const int place = placeOfEntry(push.volume, entryCount, slot);
+    SlabEntries(push.entries).values[place] = vec4(openSum.rgb, withSlab(openSum.a, openSlab));
+    if (tinted) SlabEntries(push.depths).values[place] = vec4(openDepths, 0.0);
+    ++entryCount;
+  }
+  openSum = vec4(0.0);
+  openDepths = vec3(0.0);
+}
+
+// Adds what the medium between two distances has, in equal parts for equal distances. With `tinted` also its optical depth for light, by
+// colour. Distances ascend from call to call.
 void addToSlabs(vec3 light, float depth, vec3 depths, float near, float far, bool tinted) {
   if (depth == 0.0 && light == vec3(0.0)) return;
   const float begin = slabAt(near), end = max(slabAt(far), begin + 1e-4), share = 1.0 / (end - begin);
-  const int slot = slotOfThread(), last = min(int(end), MergeConstants(push.merge).values.slabs - 1);
-  int slab = min(int(begin), last);
+  const int slot = slotOfThread(), last = min(int(end), push.slabs - 1);
+  int slab = clamp(int(begin), openSlab, last);
   bool more;
   do {
     if (slab <= last) {
       const float part = share * clamp(min(end, float(slab + 1)) - max(begin, float(slab)), 0.0, end - begin);
-      const int i = slab * push.slots + slot;
-      Slabs(push.slabs).values[i] += part * vec4(light, depth);
-      if (tinted) Slabs(push.depths).values[i].rgb += part * depths;
+      if (slab != openSlab) closeSlab(slot, tinted);
+      openSlab = slab;
+      openSum += part * vec4(light, depth);
+      openDepths += part * depths;
     }
     more = ++slab <= last;
   } while (more);

@@ -1,9 +1,7 @@
 #version 460
-// Finds which volumes of a frame each ray meets, and empties the slabs of those that meet several.
+// Finds which volumes of a frame each ray meets.
 #extension GL_GOOGLE_include_directive : require
 #include "gather_samples.glsl"
-
-layout(constant_id = 0) const bool kTinted = false;
 
 // Interpolation reaches a voxel beyond the outermost centres.
 const float kAround = 1.0 + 1.0 / 1024.0;
@@ -15,7 +13,6 @@ void main() {
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   MergeConstants merge = MergeConstants(push.merge);
   uint met = 0;
-  float nearest = 3e38, farthest = 0.0;
   for (int v = 0; v < merge.values.volumes; ++v) {
     const MergedBox box = merge.values.boxes[v];
     float begin = 0.0, end = 3e38;
@@ -26,17 +23,7 @@ void main() {
       begin = max(begin, min(a, b));
       end = min(end, max(a, b));
     }
-    if (begin > end) continue;
-    met |= 1u << v;
-    nearest = min(nearest, begin);
-    farthest = max(farthest, end);
+    if (begin <= end) met |= 1u << v;
   }
-  const int slot = slotOfThread();
-  const int first = max(int(slabAt(nearest)) - 1, 0), end = min(int(slabAt(farthest)) + 2, merge.values.slabs);
-  MergedRays(push.rays).values[slot] = MergedRay(met, first, end);
-  if ((met & (met - 1)) == 0) return;
-  for (int slab = first; slab < end; ++slab) {
-    Slabs(push.slabs).values[slab * push.slots + slot] = vec4(0.0);
-    if (kTinted) Slabs(push.depths).values[slab * push.slots + slot] = vec4(0.0);
-  }
+  MergedRays(push.rays).values[slotOfThread()] = met;
 }

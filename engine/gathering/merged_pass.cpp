@@ -54,7 +54,7 @@ SlabPlan planSlabs(std::span<const SlabExtent> extents) {
     wanted += (stretch.end - stretch.begin) / stretch.thickness + 1.0;
     stretches.push_back(stretch);
   }
-  const double thicker = std::max(wanted / (kMaxSlabs - double(stretches.size())), 1.0);
+  const double thicker = std::max(wanted / (shader::kMaxSlabs - double(stretches.size())), 1.0);
   SlabPlan plan;
   for (const SlabExtent& stretch : stretches) {
     const double length = stretch.end - stretch.begin;
@@ -81,7 +81,8 @@ void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Ca
   }
   const SlabPlan plan = planSlabs(extents);
   merge.intervals = int(plan.intervals.size());
-  merge.slabs = slabCount_ = plan.slabs;
+  slabs_ = plan.slabs;
+  volumes_ = int(parts.size());
   std::ranges::copy(plan.intervals, merge.interval);
   tinted_ = std::ranges::any_of(parts, [](const Part& part) { return part.volume->isTinted(); });
   if (merge_.bytes() == 0) merge_ = Buffer(device_, sizeof(merge), MemoryUse::Device, "volumes of a frame");
@@ -95,9 +96,13 @@ void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Ca
   makeRoom(parts.front().frame);
 }
 
+std::uint64_t MergedPass::entriesOfSlot() const {
+  return std::uint64_t(volumes_) * std::uint64_t(std::max(slabs_, 1));
+}
+
 /// How many rows of a dispatch are marched at a time.
 int MergedPass::rowsOfBand(int columns, int rows, bool listed) const {
-  const std::uint64_t perSlot = std::uint64_t(std::max(slabCount_, 1)) * sizeof(glm::vec4) * (tinted_ ? 2 : 1);
+  const std::uint64_t perSlot = entriesOfSlot() * sizeof(glm::vec4) * (tinted_ ? 2 : 1);
   const auto most = int(std::clamp<std::uint64_t>(kSlabBytes / (perSlot * std::uint64_t(columns)), 1, std::uint64_t(rows)));
   return listed ? most : std::max(most / kTile, 1) * kTile;
 }
@@ -114,17 +119,15 @@ void MergedPass::makeRoom(const shader::GatherFrame& frame) {
 }
 
 void MergedPass::makeRoom(std::uint64_t slots) {
-  const std::uint64_t bytes = slots * std::uint64_t(std::max(slabCount_, 1)) * sizeof(glm::vec4);
-  if (rays_.bytes() < slots * sizeof(shader::MergedRay))
-    rays_ = Buffer(device_, slots * sizeof(shader::MergedRay), MemoryUse::Device, "rays of several volumes");
-  if (slabs_.bytes() < bytes) {
-    slabs_ = {};  // free the old buffer before allocating the new one
-    slabs_ = Buffer(device_, bytes, MemoryUse::Device, "slabs");
-  }
-  if (tinted_ && depths_.bytes() < bytes) {
-    depths_ = {};
-    depths_ = Buffer(device_, bytes, MemoryUse::Device, "optical depths of slabs");
-  }
+  const auto make = [&](Buffer& buffer, std::uint64_t bytes, const char* name) {
+    if (buffer.bytes() >= bytes) return;
+    buffer = {};  // free the old buffer before allocating the new one
+    buffer = Buffer(device_, bytes, MemoryUse::Device, name);
+  };
+  make(rays_, slots * sizeof(std::uint32_t), "rays of several volumes");
+  make(counts_, slots * std::uint64_t(volumes_) * sizeof(std::uint32_t), "entries of rays");
+  make(entries_, slots * entriesOfSlot() * sizeof(glm::vec4), "slabs");
+  if (tinted_) make(depths_, slots * entriesOfSlot() * sizeof(glm::vec4), "optical depths of slabs");
 }
 
 /// Without a list `extent` is in samples, with one in rows of its workgroups.
@@ -132,20 +135,22 @@ void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, glm:
   shader::SamplesPush push = samples;
   push.merge = addressWords(merge_.address());
   push.rays = addressWords(rays_.address());
-  push.slabs = addressWords(slabs_.address());
+  push.entries = addressWords(entries_.address());
+  push.counts = addressWords(counts_.address());
+  push.slabs = slabs_;
   push.depths = addressWords(depths_.bytes() > 0 ? depths_.address() : 0);
   const Buffer& frame = pass_.frameBuffer();
   const glm::ivec3 threads(extent, 1);
-  commands.dispatch(makeComputePipeline(device_, shaders::merge_rays, {tinted_}), std::array<Binding, 1>{&frame}, push, threads);
+  commands.dispatch(makeComputePipeline(device_, shaders::merge_rays, {}), std::array<Binding, 1>{&frame}, push, threads);
   commands.barrier(kComputeStage, kComputeStage);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     push.volume = int(i);
     for (const GatherPass::Case which : {GatherPass::Case::Whole, GatherPass::Case::Merged})
       pass_.dispatch(commands, *parts[i].volume, parts[i].frame, frames_[i], extent, which, push);
-    commands.barrier(kComputeStage, kComputeStage);
   }
+  commands.barrier(kComputeStage, kComputeStage);
   const std::array<Binding, 3> sums{&frame, &pass_.colorEnergyTexels(), &pass_.distanceTexels()};
-  commands.dispatch(makeComputePipeline(device_, shaders::merge_sums, {tinted_}), sums, push, threads);
+  commands.dispatch(makeComputePipeline(device_, shaders::merge_sums, {tinted_, std::uint32_t(volumes_)}), sums, push, threads);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -155,7 +160,7 @@ void MergedPass::march(Commands& commands, std::span<const Part> parts, glm::ive
   const int columns = listed ? samples.groupsOfARow * kTile * kTile : (extent.x + kTile - 1) / kTile * kTile;
   const int rows = listed ? samples.rowsOfARange * shader::kSampleRanges : extent.y;
   const int inBand = rowsOfBand(columns, rows, listed);
-  FV_CHECK_LE(std::uint64_t(columns) * std::uint64_t(inBand) * sizeof(shader::MergedRay), rays_.bytes());
+  FV_CHECK_LE(std::uint64_t(columns) * std::uint64_t(inBand) * sizeof(std::uint32_t), rays_.bytes());
   for (int first = 0; first < rows; first += inBand) {
     shader::SamplesPush push = samples;
     push.firstRow = first;

@@ -21,10 +21,9 @@ struct SlabPlan {
 struct SlabExtent {
   double begin = 0.0, end = 0.0, thickness = 1.0;
 };
-/// Covers all extents, with the thinnest of their slabs where they overlap; thicker ones if there would be more than kMaxSlabs. At most
+/// Covers all extents, with the thinnest of their slabs where they overlap; thicker ones if there would be more than shader::kMaxSlabs. At most
 /// shader::kMaxMerged extents.
 SlabPlan planSlabs(std::span<const SlabExtent> extents);
-inline constexpr int kMaxSlabs = 4096;
 
 /// COMPUTE merge_rays.comp, gather.comp and merge_sums.comp, for one range of rays after the other.
 class MergedPass {
@@ -47,6 +46,7 @@ class MergedPass {
   void begin(Commands& commands, std::span<const Part> parts, const Camera& camera);
   void march(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples);
   void marchBand(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples);
+  std::uint64_t entriesOfSlot() const;
   int rowsOfBand(int columns, int rows, bool listed) const;
   void makeRoom(const shader::GatherFrame& frame);
   void makeRoom(std::uint64_t slots);
@@ -55,9 +55,9 @@ class MergedPass {
   GatherPass pass_;
   std::vector<Buffer> frames_;  ///< shader::GatherFrame of each part
   Buffer merge_;                ///< shader::MergeFrame
-  Buffer rays_;                 ///< shader::MergedRay by slot
-  Buffer slabs_, depths_;       ///< vec4 by slab and slot; `depths_` only where light has another extinction than alpha
-  int slabCount_ = 0;
+  Buffer rays_, counts_;        ///< uint by slot: volumes that are met; by volume and slot: numbers of entries
+  Buffer entries_, depths_;     ///< vec4 by volume, number and slot; `depths_` only where light has another extinction than alpha
+  int volumes_ = 0, slabs_ = 0;
   bool tinted_ = false;
 };
 
