@@ -84,7 +84,7 @@ void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, in
 
 // Adds a slice of blocks, or the stretch up to it.
 void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
-  if (kSampled)
+  if (kSampled || kMerged)
     addBlockStretch(sums, last, level, ray, slice, within);
   else
     addSlice(sums, level, ray, slice);
@@ -112,7 +112,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
   int left = slices.y - slices.x + 1;
   if (left <= 0) return;
   const int begin = slice;
-  const bool stretches = scalars || kSampled;
+  const bool stretches = scalars || kSampled || kMerged;
   if (stretches) ++left;
   SliceValues last = emptySliceValues();
   if (kCube) {
@@ -210,6 +210,7 @@ void main() {
     // With other volumes: rays that meet only this one are marched as if there were no others.
     const uint met = MergedRays(push.rays).values[slotOfThread()], own = 1u << push.volume;
     if ((met & own) == 0 || (met == own) == kMerged) return;
+    if (kMerged) keepIntervals();
   }
   index += kCube ? frame.cube.corner : frame.firstSeen;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);

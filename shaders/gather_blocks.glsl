@@ -71,6 +71,35 @@ vec3 leavingEmission(SliceValues last, SliceValues found, float stretch) {
   return 0.5 * (meanTransmittance(near) * last.emission + exp(-near) * meanTransmittance(far) * found.emission);
 }
 
+// The medium in the middle between two slices, between all eight blocks around: source term and extinction. Slices beyond the volume have none.
+vec4 mediumBetween(Slices level, Ray ray, int first, int second) {
+  const vec2 position = ray.origin + ray.slope * (0.5 * float(first + second));
+  vec4 sum = vec4(0.0);
+  [[unroll]] for (int i = 0; i < 2; ++i) {
+    const int slice = i == 0 ? first : second;
+    vec4 weights;
+    const int quad = quadAt(level, position, clamp(slice, 0, level.count - 1), weights);
+    const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
+    if (slice >= 0 && slice < level.count) sum += 0.5 * medium;
+  }
+  return sum;
+}
+
+// Beside other volumes, whose footprints no stencil restores: a stretch in two halves, whose means are those of the ends and the middle.
+void addHalves(inout Sums sums, SliceValues last, SliceValues found, Slices level, Ray ray, int slice, float ahead, SegmentLight lit) {
+  const vec4 middle = mediumBetween(level, ray, slice - int(ray.direction), slice);
+  SegmentLight farLit = lit;
+  lit.change *= 0.5;
+  farLit.begin += lit.change;
+  farLit.change = lit.change;
+  if (kEmits) {
+    lit.emission = last.emission;
+    farLit.emission = found.emission;
+  }
+  addSegment(sums, 0.5 * (last.medium + middle), ray.layer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, 0.25, lit, ray);
+  addSegment(sums, 0.5 * (middle + found.medium), ray.layer * clamp(ahead, 0.0, 0.5), ahead - 0.25, 0.25, farLit, ray);
+}
+
 // For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
 // light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
 void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
@@ -103,9 +132,13 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
       lightFrom(lit, outsideOf(level, ray, float(slice) - 0.5 * ray.direction, -gradient));
     }
   }
-  const float stretch = ray.layer * clamp(ahead, 0.0, 1.0);
-  if (kEmits) lit.emission = leavingEmission(last, found, kMerged ? 0.0 : stretch);
-  addSegment(sums, medium, stretch, ahead - 0.5, 0.5, lit, ray);
+  if (kMerged) {
+    addHalves(sums, last, found, level, ray, slice, ahead, lit);
+  } else {
+    const float stretch = ray.layer * clamp(ahead, 0.0, 1.0);
+    if (kEmits) lit.emission = leavingEmission(last, found, stretch);
+    addSegment(sums, medium, stretch, ahead - 0.5, 0.5, lit, ray);
+  }
   last = found;
 }
 

@@ -35,15 +35,44 @@ ivec2 sampleOfThread() {
 // The place of this thread's ray among those of the dispatch.
 int slotOfThread() { return push.step != 0 ? int(gl_GlobalInvocationID.x) + int(gl_GlobalInvocationID.y) * push.columns : int(numberInList(0)); }
 
+// The first intervals of slabs, which two volumes have at most: loads from addresses are slow on lavapipe.
+const int kKeptIntervals = 3;
+SlabInterval keptIntervals[kKeptIntervals];
+int intervalCount = 0;
+
+// Has to be called before the functions below.
+void keepIntervals() {
+  MergeConstants merge = MergeConstants(push.merge);
+  intervalCount = merge.values.intervals;
+  [[unroll]] for (int i = 0; i < kKeptIntervals; ++i) {
+    keptIntervals[i] = SlabInterval(3e38, 3e38, 1.0, 3e38);
+    if (i < intervalCount) keptIntervals[i] = merge.values.interval[i];
+  }
+}
+
+float slabsIn(SlabInterval interval, float distance) {
+  return interval.perUnit * clamp(distance - interval.begin, 0.0, interval.end - interval.begin);
+}
+
 // The number of the slab at a distance from the eye plane, with the fraction of it that is in front.
 float slabAt(float distance) {
-  MergeConstants merge = MergeConstants(push.merge);
   float slab = 0.0;
-  for (int i = 0; i < merge.values.intervals; ++i) {
-    const SlabInterval interval = merge.values.interval[i];
-    slab += interval.perUnit * clamp(distance - interval.begin, 0.0, interval.end - interval.begin);
-  }
+  [[unroll]] for (int i = 0; i < kKeptIntervals; ++i) slab += slabsIn(keptIntervals[i], distance);
+  for (int i = kKeptIntervals; i < intervalCount; ++i) slab += slabsIn(MergeConstants(push.merge).values.interval[i], distance);
   return slab;
+}
+
+// The distance of the middle of a slab.
+float distanceOf(int slab) {
+  const float middle = float(slab) + 0.5;
+  float distance = 0.0;
+  [[unroll]] for (int i = 0; i < kKeptIntervals; ++i)
+    if (middle >= keptIntervals[i].first) distance = keptIntervals[i].begin + (middle - keptIntervals[i].first) / keptIntervals[i].perUnit;
+  for (int i = kKeptIntervals; i < intervalCount; ++i) {
+    const SlabInterval interval = MergeConstants(push.merge).values.interval[i];
+    if (middle >= interval.first) distance = interval.begin + (middle - interval.first) / interval.perUnit;
+  }
+  return distance;
 }
 
 float withSlab(float depth, int slab) { return uintBitsToFloat(floatBitsToUint(depth) & ~uint(kMaxSlabs - 1) | uint(slab)); }

@@ -3,6 +3,7 @@
 // are mixed, C = T (1 - exp(-t)) / t times the light that they send to the eye, t the sum of their optical depths. The order of the volumes
 // does not matter.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 #include "gather_samples.glsl"
 
 layout(constant_id = 0) const bool kTinted = false;
@@ -10,19 +11,9 @@ layout(constant_id = 1) const int kVolumes = 2;
 
 layout(binding = 1, rgba32f) writeonly uniform imageBuffer colorEnergy;
 layout(binding = 2, r32f) writeonly uniform imageBuffer distances;
+layout(binding = 3) uniform textureBuffer slabEntries;
 
 vec3 meanTransmittance(vec3 x) { return mix((1.0 - exp(-x)) / max(x, 1e-6), 1.0 - x * (0.5 - x / 6.0), lessThan(x, vec3(0.02))); }
-
-// The distance of the middle of a slab.
-float distanceOf(int slab) {
-  MergeConstants merge = MergeConstants(push.merge);
-  float distance = 0.0;
-  for (int i = 0; i < merge.values.intervals; ++i) {
-    const SlabInterval interval = merge.values.interval[i];
-    if (float(slab) + 0.5 >= interval.first) distance = interval.begin + (float(slab) + 0.5 - interval.first) / interval.perUnit;
-  }
-  return distance;
-}
 
 void main() {
   ivec2 index = sampleOfThread();
@@ -32,6 +23,7 @@ void main() {
   const uint met = MergedRays(push.rays).values[slot];
   if (met != 0 && (met & (met - 1)) == 0) return;
   const float endTransmittance = MergeConstants(push.merge).values.endTransmittance;
+  keepIntervals();
   // The next entry of each volume.
   vec4 next[kVolumes];
   int slabs[kVolumes], numbers[kVolumes], counts[kVolumes];
@@ -39,7 +31,7 @@ void main() {
   [[unroll]] for (int v = 0; v < kVolumes; ++v) {
     counts[v] = (met >> v & 1u) != 0 ? EntryCounts(push.counts).values[v * push.slots + slot] : 0;
     numbers[v] = 0;
-    next[v] = counts[v] > 0 ? SlabEntries(push.entries).values[placeOfEntry(v, 0, slot)] : vec4(0.0);
+    next[v] = counts[v] > 0 ? texelFetch(slabEntries, placeOfEntry(v, 0, slot)) : vec4(0.0);
     slabs[v] = counts[v] > 0 ? slabOf(next[v].a) : kMaxSlabs;
     slab = min(slab, slabs[v]);
   }
@@ -57,7 +49,7 @@ void main() {
           if (kTinted) depths += SlabEntries(push.depths).values[placeOfEntry(v, numbers[v], slot)].rgb;
           ++numbers[v];
           const bool hasNext = numbers[v] < counts[v];
-          if (hasNext) next[v] = SlabEntries(push.entries).values[placeOfEntry(v, numbers[v], slot)];
+          if (hasNext) next[v] = texelFetch(slabEntries, placeOfEntry(v, numbers[v], slot));
           slabs[v] = hasNext ? slabOf(next[v].a) : kMaxSlabs;
         }
         following = min(following, slabs[v]);

@@ -98,6 +98,9 @@ SceneDescription SceneDescription::of(const std::string& volume) const {
 
 void SceneDescription::check() const {
   input.check();
+  if (!added.empty() && method.drawing() == Draw::Splats)
+    fail(ErrorKind::Usage, "splats are drawn of one volume: leave out {} and other options of splats, or {}", Parameter("draw", "splats"),
+         Parameter("add"));
   for (const AddedVolume& one : added) {
     one.input.check();
     one.emission.check(one.input);

@@ -122,8 +122,9 @@ bool isFormerDefault(const SceneField& field, const Json& value) {
 
 /// Whether a list stands for the one field of a section: "volumes": [...].
 bool isListOf(const std::string& section, const Json& value) {
-  return value.is_array() &&
-         std::ranges::any_of(sceneFields(), [&](const SceneField& field) { return field.section == section && field.key() == section; });
+  return value.is_array() && std::ranges::any_of(sceneFields(), [&](const SceneField& field) {
+           return field.repeated && field.section == section && field.key() == section;
+         });
 }
 
 /// The keys of a section with their values.
@@ -236,7 +237,7 @@ OrderedJson sceneToJson(const SceneDescription& description, const std::optional
   OrderedJson scene = OrderedJson::object();
   for (const SceneField& field : sceneFields())
     for (const std::string& text : field.texts(description)) {
-      OrderedJson& place = field.key() == field.section ? scene[field.section] : scene[field.section][field.key()];
+      OrderedJson& place = field.repeated && field.key() == field.section ? scene[field.section] : scene[field.section][field.key()];
       if (field.repeated)
         place.push_back(OrderedJson(fieldJson(field, text, folder)));
       else

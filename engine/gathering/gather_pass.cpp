@@ -98,9 +98,9 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   commands.update(frame_, frame);
 }
 
-std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int axis, const Buffer& frameBuffer) const {
+std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int axis, const Dispatch& how) const {
   const GatherVolume::Quads& quads = volume.quads(axis);
-  std::vector<Binding> bindings{&frameBuffer,        &volume.brickNumbers(),       &quads.medium.texels,      &quads.source.texels,
+  std::vector<Binding> bindings{how.frame,           &volume.brickNumbers(),       &quads.medium.texels,      &quads.source.texels,
                                 &quads.extra.texels, &gathered_.colorEnergyTexels, &gathered_.distanceTexels, &volume.transferTable(),
                                 &volume.skips()};
   for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
@@ -109,30 +109,35 @@ std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int 
   return bindings;
 }
 
-void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Buffer& frameBuffer,
-                          glm::ivec2 extent, Case which, const shader::SamplesPush& samples) const {
-  for (int axis = 0; axis < 3; ++axis)
-    if (someRayHasAxis(frame, axis))
-      commands.dispatch(makeGather(device_, axis, volume, frame.coarsest > 0, gatherShader(volume, which)),
-                        gatherBindings(volume, axis, frameBuffer), samples, glm::ivec3(extent, 1));
+void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Dispatch& how,
+                          const shader::SamplesPush& samples) const {
+  for (int axis = 0; axis < 3; ++axis) {
+    if (!someRayHasAxis(frame, axis)) continue;
+    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, gatherShader(volume, how.which));
+    const std::vector<Binding> bindings = gatherBindings(volume, axis, how);
+    if (how.arguments != nullptr)
+      commands.dispatchIndirect(pipeline, bindings, samples, *how.arguments, how.offset, how.mostGroups);
+    else
+      commands.dispatch(pipeline, bindings, samples, glm::ivec3(how.threads, 1));
+  }
 }
 
 void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent,
                                  Case which, const shader::SamplesPush& samples) {
   if (samples.step != 0) {
-    dispatch(commands, volume, frame, frame_, extent, which, samples);
+    dispatch(commands, volume, frame, {.which = which, .frame = &frame_, .threads = extent}, samples);
     return;
   }
-  for (int axis = 0; axis < 3; ++axis) {
-    if (!someRayHasAxis(frame, axis)) continue;
-    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, gatherShader(volume, which));
-    const std::vector<Binding> bindings = gatherBindings(volume, axis, frame_);
-    shader::SamplesPush range = samples;
-    for (int i = 0; i < shader::kSampleRanges; ++i) {
-      range.firstRow = i * samples.rowsOfARange;
-      commands.dispatchIndirect(pipeline, bindings, range, adaptive_.list, std::uint64_t(i) * sizeof(shader::DispatchSize),
-                                std::uint64_t(samples.rowsOfARange) * std::uint64_t(samples.groupsOfARow));
-    }
+  shader::SamplesPush range = samples;
+  for (int i = 0; i < shader::kSampleRanges; ++i) {
+    range.firstRow = i * samples.rowsOfARange;
+    dispatch(commands, volume, frame,
+             {.which = which,
+              .frame = &frame_,
+              .arguments = &adaptive_.list,
+              .offset = std::uint64_t(i) * sizeof(shader::DispatchSize),
+              .mostGroups = std::uint64_t(samples.rowsOfARange) * std::uint64_t(samples.groupsOfARow)},
+             range);
   }
 }
 

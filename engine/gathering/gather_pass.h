@@ -35,10 +35,20 @@ class GatherPass {
   using March = std::function<void(Commands&, glm::ivec2 extent, const shader::SamplesPush& samples)>;
   void recordSamples(Commands& commands, const shader::GatherFrame& frame, const March& march);
   enum class Case { Whole, Cube, Merged };
-  /// One dispatch for each axis along which the volume's rays march. `frameBuffer` has the frame; `extent` as for March, with a step of 0
-  /// that of the workgroups' threads.
-  void dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Buffer& frameBuffer,
-                glm::ivec2 extent, Case which, const shader::SamplesPush& samples) const;
+  /// Where a dispatch gets its frame and its size from.
+  struct Dispatch {
+    Case which = Case::Whole;
+    const Buffer* frame;                ///< shader::GatherFrame
+    glm::ivec2 threads{0};              ///< if it is not indirect
+    const Buffer* arguments = nullptr;  ///< of an indirect dispatch
+    std::uint64_t offset = 0;           ///< in `arguments`
+    std::uint64_t mostGroups = 0;       ///< of an indirect dispatch
+  };
+  /// One dispatch for each axis along which the volume's rays march.
+  void dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Dispatch& how,
+                const shader::SamplesPush& samples) const;
+  /// The list of samples that are marched besides coarse ones: shader::SampleListHead and places.
+  const Buffer& list() const { return adaptive_.list; }
   /// Of the last lattice.
   const TexelView& colorEnergyTexels() const { return gathered_.colorEnergyTexels; }
   const TexelView& distanceTexels() const { return gathered_.distanceTexels; }
@@ -82,7 +92,7 @@ class GatherPass {
   /// `extent` is that of the samples that are dispatched, unless they are listed.
   void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent, Case which,
                        const shader::SamplesPush& samples = {.step = 1});
-  std::vector<Binding> gatherBindings(const GatherVolume& volume, int axis, const Buffer& frameBuffer) const;
+  std::vector<Binding> gatherBindings(const GatherVolume& volume, int axis, const Dispatch& how) const;
   std::vector<GatherSums> download(const Sums& sums) const;
   std::vector<Binding> sumBindings(const Sums& from, const Sums& to) const;
 

@@ -13,9 +13,9 @@ namespace freevoxels {
 namespace {
 
 /// Thickness of slabs, in edges of the smallest voxels.
-constexpr double kSlabVoxels = 1.0;
+constexpr double kSlabVoxels = 2.0;
 /// Rays are marched in ranges for which the slabs take about this.
-constexpr std::uint64_t kSlabBytes = 128u << 20;
+constexpr std::uint64_t kSlabBytes = 256u << 20;
 constexpr int kTile = shader::kGatherTile;
 
 /// The components of an affine function of the position p = (1, x, y), one by one.
@@ -100,10 +100,11 @@ std::uint64_t MergedPass::entriesOfSlot() const {
   return std::uint64_t(volumes_) * std::uint64_t(std::max(slabs_, 1));
 }
 
-/// How many rows of a dispatch are marched at a time.
+/// How many rows of a dispatch are marched at a time: of workgroups of a list, all of a range of it where there is room for that.
 int MergedPass::rowsOfBand(int columns, int rows, bool listed) const {
-  const std::uint64_t perSlot = entriesOfSlot() * sizeof(glm::vec4) * (tinted_ ? 2 : 1);
-  const auto most = int(std::clamp<std::uint64_t>(kSlabBytes / (perSlot * std::uint64_t(columns)), 1, std::uint64_t(rows)));
+  const std::uint64_t perSlot = entriesOfSlot() * (tinted_ ? 2 : 1);
+  const std::uint64_t entries = std::min<std::uint64_t>(kSlabBytes / sizeof(glm::vec4), device_.limits().maxTexelBufferElements);
+  const auto most = int(std::clamp<std::uint64_t>(entries / (perSlot * std::uint64_t(columns)), 1, std::uint64_t(rows)));
   return listed ? most : std::max(most / kTile, 1) * kTile;
 }
 
@@ -114,24 +115,29 @@ void MergedPass::makeRoom(const shader::GatherFrame& frame) {
   const int columns = groups.x * kTile, listColumns = columns * kTile;
   std::uint64_t slots = std::uint64_t(columns) * std::uint64_t(rowsOfBand(columns, extent.y, false));
   // Of a list of at most three samples for each coarse one.
-  if (adapts) slots = std::max(slots, std::uint64_t(listColumns) * std::uint64_t(rowsOfBand(listColumns, 4 * extent.y, true)));
+  if (adapts) {
+    const int rows = (3 * extent.x * extent.y + listColumns - 1) / listColumns;
+    const int inRange = (rows + shader::kSampleRanges - 1) / shader::kSampleRanges;
+    slots = std::max(slots, std::uint64_t(listColumns) * std::uint64_t(rowsOfBand(listColumns, inRange, true)));
+  }
   makeRoom(slots);
 }
 
 void MergedPass::makeRoom(std::uint64_t slots) {
-  const auto make = [&](Buffer& buffer, std::uint64_t bytes, const char* name) {
-    if (buffer.bytes() >= bytes) return;
+  const auto make = [&](Buffer& buffer, std::uint64_t bytes, const char* name, VkBufferUsageFlags usage = 0) {
+    if (buffer.bytes() >= bytes) return false;
     buffer = {};  // free the old buffer before allocating the new one
-    buffer = Buffer(device_, bytes, MemoryUse::Device, name);
+    buffer = Buffer(device_, bytes, MemoryUse::Device, name, usage);
+    return true;
   };
   make(rays_, slots * sizeof(std::uint32_t), "rays of several volumes");
   make(counts_, slots * std::uint64_t(volumes_) * sizeof(std::uint32_t), "entries of rays");
-  make(entries_, slots * entriesOfSlot() * sizeof(glm::vec4), "slabs");
+  if (make(entries_, slots * entriesOfSlot() * sizeof(glm::vec4), "slabs", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
+    entryTexels_ = TexelView(device_, entries_);
   if (tinted_) make(depths_, slots * entriesOfSlot() * sizeof(glm::vec4), "optical depths of slabs");
 }
 
-/// Without a list `extent` is in samples, with one in rows of its workgroups.
-void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples) {
+void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch how, const shader::SamplesPush& samples) {
   shader::SamplesPush push = samples;
   push.merge = addressWords(merge_.address());
   push.rays = addressWords(rays_.address());
@@ -140,18 +146,25 @@ void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, glm:
   push.slabs = slabs_;
   push.depths = addressWords(depths_.bytes() > 0 ? depths_.address() : 0);
   const Buffer& frame = pass_.frameBuffer();
-  const glm::ivec3 threads(extent, 1);
-  commands.dispatch(makeComputePipeline(device_, shaders::merge_rays, {}), std::array<Binding, 1>{&frame}, push, threads);
-  commands.barrier(kComputeStage, kComputeStage);
+  const auto dispatch = [&](const Pipeline& pipeline, std::span<const Binding> bindings) {
+    if (how.arguments != nullptr)
+      commands.dispatchIndirect(pipeline, bindings, push, *how.arguments, how.offset, how.mostGroups);
+    else
+      commands.dispatch(pipeline, bindings, push, glm::ivec3(how.threads, 1));
+    commands.barrier(kComputeStage, kComputeStage);
+  };
+  dispatch(makeComputePipeline(device_, shaders::merge_rays, {}), std::array<Binding, 1>{&frame});
   for (std::size_t i = 0; i < parts.size(); ++i) {
     push.volume = int(i);
-    for (const GatherPass::Case which : {GatherPass::Case::Whole, GatherPass::Case::Merged})
-      pass_.dispatch(commands, *parts[i].volume, parts[i].frame, frames_[i], extent, which, push);
+    how.frame = &frames_[i];
+    for (const GatherPass::Case which : {GatherPass::Case::Whole, GatherPass::Case::Merged}) {
+      how.which = which;
+      pass_.dispatch(commands, *parts[i].volume, parts[i].frame, how, push);
+    }
   }
   commands.barrier(kComputeStage, kComputeStage);
-  const std::array<Binding, 3> sums{&frame, &pass_.colorEnergyTexels(), &pass_.distanceTexels()};
-  commands.dispatch(makeComputePipeline(device_, shaders::merge_sums, {tinted_, std::uint32_t(volumes_)}), sums, push, threads);
-  commands.barrier(kComputeStage, kComputeStage);
+  dispatch(makeComputePipeline(device_, shaders::merge_sums, {tinted_, std::uint32_t(volumes_)}),
+           std::array<Binding, 4>{&frame, &pass_.colorEnergyTexels(), &pass_.distanceTexels(), &entryTexels_});
 }
 
 /// Marches samples in ranges of rows, of samples or of workgroups of the list.
@@ -159,7 +172,7 @@ void MergedPass::march(Commands& commands, std::span<const Part> parts, glm::ive
   const bool listed = samples.step == 0;
   const int columns = listed ? samples.groupsOfARow * kTile * kTile : (extent.x + kTile - 1) / kTile * kTile;
   const int rows = listed ? samples.rowsOfARange * shader::kSampleRanges : extent.y;
-  const int inBand = rowsOfBand(columns, rows, listed);
+  const int inBand = rowsOfBand(columns, listed ? samples.rowsOfARange : rows, listed);
   FV_CHECK_LE(std::uint64_t(columns) * std::uint64_t(inBand) * sizeof(std::uint32_t), rays_.bytes());
   for (int first = 0; first < rows; first += inBand) {
     shader::SamplesPush push = samples;
@@ -167,7 +180,14 @@ void MergedPass::march(Commands& commands, std::span<const Part> parts, glm::ive
     push.columns = columns;
     push.slots = columns * inBand;
     const int count = std::min(inBand, rows - first);
-    marchBand(commands, parts, listed ? glm::ivec2(samples.groupsOfARow * kTile, count * kTile) : glm::ivec2(extent.x, count), push);
+    GatherPass::Dispatch how{.threads = listed ? glm::ivec2(samples.groupsOfARow * kTile, count * kTile) : glm::ivec2(extent.x, count)};
+    if (listed && inBand == samples.rowsOfARange) {
+      // How many workgroups there are is known on the device.
+      how.arguments = &pass_.list();
+      how.offset = std::uint64_t(first / inBand) * sizeof(shader::DispatchSize);
+      how.mostGroups = std::uint64_t(inBand) * std::uint64_t(samples.groupsOfARow);
+    }
+    marchBand(commands, parts, how, push);
   }
 }
 

@@ -1,8 +1,8 @@
 #pragma once
 // Draws several volumes in one image by gathering, whatever their order. Each marches the rays of one lattice by itself; what it has along
-// a ray is added up in slabs between planes parallel to the image, about as thick as the smallest voxels there. Within a slab the media are
-// mixed: extinctions, and the light that they scatter and emit, add up (engine/docs/gather.md, "Several volumes"). Rays that meet one
-// volume only are those of its own frame.
+// a ray is added up in slabs between planes parallel to the image, about twice as thick as the smallest voxels there. Within a slab the
+// media are mixed: extinctions, and the light that they scatter and emit, add up (engine/docs/gather.md, "Several volumes"). Rays that meet
+// one volume only are those of its own frame.
 
 #include <span>
 #include <vector>
@@ -45,7 +45,7 @@ class MergedPass {
  private:
   void begin(Commands& commands, std::span<const Part> parts, const Camera& camera);
   void march(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples);
-  void marchBand(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples);
+  void marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch how, const shader::SamplesPush& samples);
   std::uint64_t entriesOfSlot() const;
   int rowsOfBand(int columns, int rows, bool listed) const;
   void makeRoom(const shader::GatherFrame& frame);
@@ -57,6 +57,7 @@ class MergedPass {
   Buffer merge_;                ///< shader::MergeFrame
   Buffer rays_, counts_;        ///< uint by slot: volumes that are met; by volume and slot: numbers of entries
   Buffer entries_, depths_;     ///< vec4 by volume, number and slot; `depths_` only where light has another extinction than alpha
+  TexelView entryTexels_;
   int volumes_ = 0, slabs_ = 0;
   bool tinted_ = false;
 };

@@ -128,6 +128,34 @@ TEST_F(SceneCommand, SavedOnesMakeTheSamePixelsFromAnyFolder) {
   EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "made/t.json")).size(), 2u);
 }
 
+TEST_F(SceneCommand, VolumesAreAListOrOptionsInAnyOrder) {
+  const std::string one = "{\"volume\": \"procedural:fire\", \"resolution\": 14, \"transform\": [0.2, 0, 0.1]}",
+                    other = "\"procedural:cube\"";
+  const std::string options = "--resolution 16 --size 32x24 --camera-position 1.5,1,2 --unlit";
+  scene("{\"volumes\": [" + one + ", " + other + "]}");
+  const std::string drawn = bytes("render procedural:cloud @a.exr --float " + options + " --scene @s.json");
+  const std::string text = "procedural:fire,resolution=14,transform=0.2,0,0.1";
+  for (const std::string& added : {"--add " + text + " --add procedural:cube", "--add procedural:cube --add " + text}) {
+    expectSuccess(run("render procedural:cloud @b.exr --float --quiet " + options + " " + added + " --save-scene @saved.json"));
+    EXPECT_EQ(readExr(folder / "b.exr").pixels, readExr(folder / "a.exr").pixels) << added;
+    expectSuccess(run("render --scene @saved.json @c.exr --float --quiet"));
+    EXPECT_EQ(readExr(folder / "c.exr").pixels, readExr(folder / "a.exr").pixels) << added;
+  }
+  expectSuccess(run("render procedural:cloud @alone.exr --float --quiet " + options));
+  EXPECT_NE(readExr(folder / "alone.exr").pixels, readExr(folder / "a.exr").pixels);
+  EXPECT_FALSE(drawn.empty());
+}
+
+TEST_F(SceneCommand, AVolumeThatIsWronglyAddedIsSaidInOneSentence) {
+  const std::string render = "render procedural:cube @a.png --resolution 8 --size 16x12 --add ";
+  expectCleanRefusal(render + "procedural:cloud,densityscale=3", ExitCode::Usage, "did you mean 'density-scale'");
+  expectCleanRefusal(render + "procedural:cloud,transform=1,2", ExitCode::Usage, "X,Y,Z");
+  expectCleanRefusal(render + "procedural:cloud,transform=0,0,0,0,0,1,0,0,0,0,1,0", ExitCode::Usage, "inverted");
+  expectCleanRefusal(render + "@missing.vdb", ExitCode::Input, "missing.vdb");
+  expectCleanRefusal(render + "procedural:cloud --paper", ExitCode::Usage, "splats");
+  expectBadScene(R"({"volumes": [{"resolution": 8}]})", "names no volume");
+}
+
 TEST_F(SceneCommand, NamesThatAreNoUnicodeAreRefusedInsteadOfChanged) {
   expectSuccess(run("generate cloud @made\xff.vdb --resolution 12 --quiet"));
   const std::string draw = "render @made\xff.vdb @a.png --size 8 --quiet";
@@ -198,7 +226,7 @@ TEST_F(SceneCommand, ExamplesAreRight) {
 /// Every option of an image is explained, and nothing else: no key is forgotten.
 TEST_F(SceneCommand, EveryKeyIsInTheirReadme) {
   const std::string readme = readBytes(kScenes + "/README.md");
-  std::set<std::string> explained, known{"volume", "lights"};
+  std::set<std::string> explained, known{"volume", "lights", "volumes"};
   const std::regex row(R"(\n\| `([a-z-]+)` \|)"), heading(R"(\n([A-Z][a-z]+):\n)"),
       option(R"(\n  (--[a-z-]+))");
   for (std::sregex_iterator i(readme.begin(), readme.end(), row), end; i != end; ++i)
@@ -212,7 +240,7 @@ TEST_F(SceneCommand, EveryKeyIsInTheirReadme) {
     const auto begin = help.begin() + groups[g].position();
     const auto end = g + 1 < groups.size() ? help.begin() + groups[g + 1].position() : help.end();
     for (std::sregex_iterator i(begin, end, option), last; i != last; ++i)
-      if ((*i)[1] != "--light") known.insert((*i)[1].str().substr(2));
+      if ((*i)[1] != "--light" && (*i)[1] != "--add") known.insert((*i)[1].str().substr(2));
   }
   std::erase_if(known, [&](const std::string& name) { return name.starts_with("no-") && known.contains(name.substr(3)); });  // of an option
   EXPECT_GT(known.size(), 25u);

@@ -78,6 +78,12 @@ SceneDescription others(const TemporaryFolder& folder) {
   scene.camera.orbit = glm::dvec2(10.0, -20.0);
   scene.camera.orthographicHeight = 2.5;
   scene.output.transparent = true;
+  AddedVolume added{.shading = Shading::Scatter, .transform = glm::dmat4(1.0)};
+  added.input = {.volume = (folder / "b.vdb").string(), .grid = "soot"};
+  added.classification.transferFunction = (folder / "f.json").string();
+  added.emission.emission = false;
+  (*added.transform)[3] = {0.1, 2.0, 1e-7, 1.0};
+  scene.added = {added, AddedVolume{.input = {.volume = "procedural:fire", .resolution = glm::ivec3(9)}}};
   return scene;
 }
 

@@ -54,6 +54,19 @@ TEST(Library, FramesOfOneRendererAreThoseOfSeparateOnes) {
   EXPECT_FALSE(shared.timings().empty());
 }
 
+/// Extinctions add up, whatever a volume is divided into.
+TEST(Library, TwoHalvesOfAVolumeAreTheVolume) {
+  const std::string half = R"({"volume": "procedural:cloud", "resolution": 24, "density-scale": 10})";
+  const v1::Volume volume = v1::Volume::open("procedural:cloud", R"({"resolution": 24})");
+  const std::string view = R"("size": [48, 40], "unlit": true)";
+  const v1::Image whole = v1::Renderer(volume, "{" + view + R"(, "density-scale": 20})").render();
+  v1::Renderer two(volume, "{" + view + R"(, "density-scale": 10, "volumes": [)" + half + "]}");
+  const v1::Image halves = two.render();
+  ASSERT_EQ(halves.pixels.size(), whole.pixels.size());
+  for (std::size_t i = 0; i < whole.pixels.size(); ++i) ASSERT_NEAR(halves.pixels[i], whole.pixels[i], 0.01) << i;
+  EXPECT_NE(two.render(R"({"volumes": []})").pixels, halves.pixels);
+}
+
 TEST(Library, CopiedVolumeKnowsWhatItHolds) {
   std::vector<float> values{1.0f, 2.0f, std::numeric_limits<float>::quiet_NaN(), 3.0f};
   const v1::Volume volume = v1::Volume::copy(values, {2, 1, 2});

@@ -91,6 +91,15 @@ class RenderTest(unittest.TestCase):
                                   lights=["direction=1,1,0,intensity=3"], size=(np.int64(40), 30))
         np.testing.assert_array_equal(one, other)
 
+    def test_two_halves_of_a_volume_are_the_volume(self):
+        cloud = freevoxels.Volume.open("procedural:cloud", resolution=24)
+        half = {"volume": "procedural:cloud", "resolution": 24, "density_scale": 10}
+        view = dict(size=(48, 40), unlit=True)
+        halves = freevoxels.render(cloud, volumes=[half], density_scale=10, **view)
+        np.testing.assert_allclose(halves, freevoxels.render(cloud, density_scale=20, **view), atol=0.01)
+        with self.assertRaisesRegex(ValueError, "density-scale"):
+            freevoxels.render(cloud, volumes=[{**half, "densityscale": 1}])
+
     def test_transfer_function_may_be_a_dictionary(self):
         points = {"opacity": [[0, 0], [1, 0.5]], "color": [[0, 1, 0, 0], [1, 1, 0, 0]]}
         image = freevoxels.render(blob(), transfer_function=points, unlit=True, size=(40, 40))
