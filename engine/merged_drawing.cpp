@@ -24,6 +24,18 @@ struct MergedDrawing::Medium {
       : volume(std::move(whole)), surface(of.surface), scene(device, *volume, of.classification, table, {}, progress) {}
 };
 
+namespace {
+
+/// What contentHash() leaves out of how a volume looks.
+std::string lookOf(const SceneVolume& volume) {
+  const Classification& look = volume.classification;
+  const Emission emission = look.emission.value_or(Emission{.strength = 0.0});
+  return fmt::format(" {} {} {} {} {} {} {} {} {}", look.densityScale, look.albedo.r, look.albedo.g, look.albedo.b, int(look.order),
+                     emission.strength, emission.temperatureScale, emission.temperatureOffset, volume.surface.value_or(-1.0));
+}
+
+}  // namespace
+
 MergedDrawing::MergedDrawing(const Device& device, std::vector<SceneVolume> volumes, const TableSettings& table, const Progress& progress)
     : device_(device), pass_(device) {
   if (volumes.size() > std::size_t(shader::kMaxMerged))
@@ -33,7 +45,7 @@ MergedDrawing::MergedDrawing(const Device& device, std::vector<SceneVolume> volu
   std::vector<std::shared_ptr<const Volume>> wholes;
   for (const SceneVolume& volume : volumes) {
     wholes.push_back(volume.source->whole(progress));
-    order.emplace_back(contentHash(*wholes.back(), volume.classification, nullptr), wholes.size() - 1);
+    order.emplace_back(contentHash(*wholes.back(), volume.classification, nullptr) + lookOf(volume), wholes.size() - 1);
   }
   std::ranges::sort(order);
   for (const auto& [hash, i] : order) media_.emplace_back(device, std::move(wholes[i]), volumes[i], table, progress);

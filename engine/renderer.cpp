@@ -87,8 +87,8 @@ CubeDrawing& Renderer::cubes() {
 }
 
 bool Renderer::surelyFits(const FrameSettings& settings) const {
-  const Volume& outline = source_->outline();
   if (merged_ || CubeDrawing::whyNot(settings)) return true;
+  const Volume& outline = source_->outline();
   constexpr std::uint64_t kMargin = 2;  // for what the least does not count: blocks and images
   return !inCubes_ && kMargin * leastGatherBytes(brickVoxels(*source_), outline.dimensions, outline.indexToWorld,
                                                  settings.lighting ? &*settings.lighting : nullptr, classification_.emission.has_value()) <=

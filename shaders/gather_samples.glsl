@@ -75,7 +75,11 @@ float distanceOf(int slab) {
   return distance;
 }
 
-float withSlab(float depth, int slab) { return uintBitsToFloat(floatBitsToUint(depth) & ~uint(kMaxSlabs - 1) | uint(slab)); }
+// Rounded to the bits that are left; not 0, as devices may take the bits of denormalised numbers for 0.
+float withSlab(float depth, int slab) {
+  const uint bits = floatBitsToUint(max(depth, 2e-38)) + uint(kMaxSlabs / 2);
+  return uintBitsToFloat(bits & ~uint(kMaxSlabs - 1) | uint(slab));
+}
 int slabOf(float depth) { return int(floatBitsToUint(depth) & uint(kMaxSlabs - 1)); }
 float depthOf(float depth) { return uintBitsToFloat(floatBitsToUint(depth) & ~uint(kMaxSlabs - 1)); }
 
@@ -102,7 +106,8 @@ void closeSlab(int slot, bool tinted) {
 // colour. Distances ascend from call to call.
 void addToSlabs(vec3 light, float depth, vec3 depths, float near, float far, bool tinted) {
   if (depth == 0.0 && light == vec3(0.0)) return;
-  const float begin = slabAt(near), end = max(slabAt(far), begin + 1e-4), share = 1.0 / (end - begin);
+  const float begin = min(slabAt(near), float(push.slabs) - 1e-3);  // what is rounded beyond the last slab belongs to it
+  const float end = max(slabAt(far), begin + max(1e-4, 1e-6 * begin)), share = 1.0 / (end - begin);
   const int slot = slotOfThread(), last = min(int(end), push.slabs - 1);
   int slab = clamp(int(begin), openSlab, last);
   bool more;

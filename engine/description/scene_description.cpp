@@ -199,7 +199,7 @@ Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Vo
   } else if (!volume->classification) {
     fixed.emission = {.emission = false};
   }
-  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting, .added = other.added};
+  Scene scene{.volume = std::move(volume), .camera = other.camera, .lighting = other.lighting, .added = openAddedVolumes(*this)};
   scene.classification = fixed.resolveClassification(*scene.volume);
   return scene;
 }
@@ -228,8 +228,10 @@ SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCou
 
 std::string rendererText(const SceneDescription& description, const Scene& scene) {
   const TableSettings table = description.method.table();
-  return fmt::format("{}table={} {} {} {}", textOf(description.resolved(scene), {"classification", "emission", "volumes"}),
-                     int(table.directions), int(table.code), int(table.filter), table.pathLengthCorrection);
+  std::string surfaces;  // which depend on the light's description, too
+  for (const SceneVolume& added : scene.added) surfaces += fmt::format("{} ", added.surface.value_or(-1.0));
+  return surfaces + fmt::format("{}table={} {} {} {}", textOf(description.resolved(scene), {"classification", "emission", "volumes"}),
+                                int(table.directions), int(table.code), int(table.filter), table.pathLengthCorrection);
 }
 
 }  // namespace freevoxels

@@ -23,12 +23,23 @@ void setAffine(glm::vec3 (&rows)[3], glm::dvec3 at, glm::dvec3 x, glm::dvec3 y) 
   for (int c = 0; c < 3; ++c) rows[c] = glm::dvec3(at[c], x[c], y[c]);
 }
 
-SlabExtent extentOf(const PixelRays& rays, const DeviceVolume& volume) {
+/// The box of a volume with what its coarsest blocks reach beyond it, in voxels.
+struct WideBox {
+  int margin = 0;
+  glm::ivec3 dimensions;  ///< with the margin on both sides
+
+  WideBox(const DeviceVolume& volume, int coarsest) : margin((1 << coarsest) / 2) {
+    const int edge = 1 << coarsest;
+    dimensions = (volume.layout.dimensions + edge - 1) / edge * edge + 2 * margin;
+  }
+};
+
+SlabExtent extentOf(const PixelRays& rays, const DeviceVolume& volume, const WideBox& box) {
   const glm::dmat3 toPixel = rays.indexToPixel(), linear(volume.indexToWorld);
   SlabExtent extent{.begin = std::numeric_limits<double>::max(), .end = 0.0};
   for (int corner = 0; corner < 8; ++corner) {
     const glm::dvec3 place =
-        glm::mix(glm::dvec3(-1.0), glm::dvec3(volume.layout.dimensions), glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2));
+        glm::mix(glm::dvec3(-1.0), glm::dvec3(box.dimensions), glm::dvec3(corner & 1, corner >> 1 & 1, corner >> 2)) - double(box.margin);
     const double distance = std::max((toPixel * (place - rays.origin)).z, 0.0);
     extent.begin = std::min(extent.begin, distance);
     extent.end = std::max(extent.end, distance);
@@ -39,7 +50,7 @@ SlabExtent extentOf(const PixelRays& rays, const DeviceVolume& volume) {
 
 }  // namespace
 
-SlabPlan planSlabs(std::span<const SlabExtent> extents) {
+SlabPlan planSlabs(std::span<const SlabExtent> extents, int most) {
   FV_CHECK_LE(extents.size(), std::size_t(shader::kMaxMerged));
   std::vector<double> borders;
   for (const SlabExtent& extent : extents) borders.insert(borders.end(), {extent.begin, extent.end});
@@ -50,11 +61,11 @@ SlabPlan planSlabs(std::span<const SlabExtent> extents) {
     SlabExtent stretch{.begin = borders[i], .end = borders[i + 1], .thickness = std::numeric_limits<double>::max()};
     for (const SlabExtent& extent : extents)
       if (extent.begin <= stretch.begin && stretch.end <= extent.end) stretch.thickness = std::min(stretch.thickness, extent.thickness);
-    if (!(stretch.begin < stretch.end) || stretch.thickness == std::numeric_limits<double>::max()) continue;
+    if (!(float(stretch.begin) < float(stretch.end)) || stretch.thickness == std::numeric_limits<double>::max()) continue;
     wanted += (stretch.end - stretch.begin) / stretch.thickness + 1.0;
     stretches.push_back(stretch);
   }
-  const double thicker = std::max(wanted / (shader::kMaxSlabs - double(stretches.size())), 1.0);
+  const double thicker = std::max(wanted / std::max(most - double(stretches.size()), 1.0), 1.0);
   SlabPlan plan;
   for (const SlabExtent& stretch : stretches) {
     const double length = stretch.end - stretch.begin;
@@ -74,12 +85,13 @@ void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Ca
     const DeviceVolume& volume = *parts[i].onDevice;
     const glm::ivec2 size = parts[i].frame.size;
     const PixelRays rays = pixelRays(camera, size, volume.indexToWorld).countedFrom(0.5 * glm::dvec2(size));
-    setAffine(merge.boxes[i].origin, rays.origin, rays.originX, rays.originY);
+    const WideBox box(volume, parts[i].frame.coarsest);
+    setAffine(merge.boxes[i].origin, rays.origin + double(box.margin), rays.originX, rays.originY);
     setAffine(merge.boxes[i].direction, rays.direction, rays.directionX, rays.directionY);
-    merge.boxes[i].dimensions = volume.layout.dimensions;
-    extents.push_back(extentOf(rays, volume));
+    merge.boxes[i].dimensions = box.dimensions;
+    extents.push_back(extentOf(rays, volume, box));
   }
-  const SlabPlan plan = planSlabs(extents);
+  const SlabPlan plan = planSlabs(extents, mostSlabs(parts.front().frame, int(parts.size())));
   merge.intervals = int(plan.intervals.size());
   slabs_ = plan.slabs;
   volumes_ = int(parts.size());
@@ -96,6 +108,17 @@ void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Ca
   makeRoom(parts.front().frame);
 }
 
+std::uint64_t MergedPass::mostEntries() const {
+  return std::min<std::uint64_t>(kSlabBytes / sizeof(glm::vec4), device_.limits().maxTexelBufferElements);
+}
+
+/// So many slabs that there is room for a row of workgroups.
+int MergedPass::mostSlabs(const shader::GatherFrame& frame, int volumes) const {
+  const std::uint64_t columns = std::uint64_t(frame.seenExtent.x + kTile);
+  const std::uint64_t slabs = mostEntries() / (2 * std::uint64_t(volumes) * columns * kTile);  // with tinted light, twice as much
+  return int(std::clamp<std::uint64_t>(slabs, 2 * shader::kMaxSlabIntervals, shader::kMaxSlabs));
+}
+
 std::uint64_t MergedPass::entriesOfSlot() const {
   return std::uint64_t(volumes_) * std::uint64_t(std::max(slabs_, 1));
 }
@@ -103,8 +126,7 @@ std::uint64_t MergedPass::entriesOfSlot() const {
 /// How many rows of a dispatch are marched at a time: of workgroups of a list, all of a range of it where there is room for that.
 int MergedPass::rowsOfBand(int columns, int rows, bool listed) const {
   const std::uint64_t perSlot = entriesOfSlot() * (tinted_ ? 2 : 1);
-  const std::uint64_t entries = std::min<std::uint64_t>(kSlabBytes / sizeof(glm::vec4), device_.limits().maxTexelBufferElements);
-  const auto most = int(std::clamp<std::uint64_t>(entries / (perSlot * std::uint64_t(columns)), 1, std::uint64_t(rows)));
+  const auto most = int(std::clamp<std::uint64_t>(mostEntries() / (perSlot * std::uint64_t(columns)), 1, std::uint64_t(rows)));
   return listed ? most : std::max(most / kTile, 1) * kTile;
 }
 

@@ -21,9 +21,9 @@ struct SlabPlan {
 struct SlabExtent {
   double begin = 0.0, end = 0.0, thickness = 1.0;
 };
-/// Covers all extents, with the thinnest of their slabs where they overlap; thicker ones if there would be more than shader::kMaxSlabs. At most
+/// Covers all extents, with the thinnest of their slabs where they overlap; thicker ones if there would be more than `most`. At most
 /// shader::kMaxMerged extents.
-SlabPlan planSlabs(std::span<const SlabExtent> extents);
+SlabPlan planSlabs(std::span<const SlabExtent> extents, int most = shader::kMaxSlabs);
 
 /// COMPUTE merge_rays.comp, gather.comp and merge_sums.comp, for one range of rays after the other.
 class MergedPass {
@@ -46,6 +46,8 @@ class MergedPass {
   void begin(Commands& commands, std::span<const Part> parts, const Camera& camera);
   void march(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples);
   void marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch how, const shader::SamplesPush& samples);
+  std::uint64_t mostEntries() const;
+  int mostSlabs(const shader::GatherFrame& frame, int volumes) const;
   std::uint64_t entriesOfSlot() const;
   int rowsOfBand(int columns, int rows, bool listed) const;
   void makeRoom(const shader::GatherFrame& frame);
