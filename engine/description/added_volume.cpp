@@ -3,6 +3,7 @@
 #include <fmt/ranges.h>
 
 #include <algorithm>
+#include <functional>
 #include <map>
 #include <mutex>
 #include <nlohmann/json.hpp>
@@ -84,13 +85,18 @@ Json objectOf(const std::string& text) {
   return object;
 }
 
-/// A transform's text for a list of numbers, or of such lists.
-std::string numbersOf(const Json& value) {
-  if (value.is_string()) return value.get<std::string>();
-  if (!value.is_array()) return value.dump();
+std::string joinedTexts(const Json& list, const std::function<std::string(const Json&)>& textOf) {
   std::vector<std::string> words;
-  for (const Json& one : value) words.push_back(numbersOf(one));
+  for (const Json& one : list) words.push_back(textOf(one));
   return fmt::format("{}", fmt::join(words, ","));
+}
+
+/// A transform's text for a list of numbers, or of such lists.
+std::string transformNumbers(const Json& value) {
+  const auto plain = [](const Json& one) { return one.dump(-1, ' ', false, Json::error_handler_t::replace); };
+  const auto row = [&](const Json& one) { return one.is_array() ? joinedTexts(one, plain) : plain(one); };
+  if (value.is_string()) return value.get<std::string>();
+  return value.is_array() ? joinedTexts(value, row) : plain(value);
 }
 
 std::shared_ptr<const VolumeSource> readSource(const AddedVolume& added, const Progress& progress) {
@@ -117,7 +123,7 @@ AddedVolume readAddedVolume(const std::string& text) {
     std::string name = key;
     std::ranges::replace(name, '_', '-');
     if (name == kTransform) {
-      added.transform = readTransform(numbersOf(value));
+      added.transform = readTransform(transformNumbers(value));
       continue;
     }
     const SceneField& field = ownField(name);

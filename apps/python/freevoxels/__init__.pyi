@@ -38,6 +38,9 @@ class _Input(_Part, total=False):
     volume: _Path
     no_data: float | Literal["none"] | None
 
+class _Volumes(TypedDict, total=False):
+    volumes: Sequence_[_Path | Mapping[str, Any]]  # others in the same image: a file, or its options with "volume" and "transform"
+
 class _Camera(TypedDict, total=False):
     orbit: _Pair
     camera_position: _Triple
@@ -109,7 +112,7 @@ class _Device(TypedDict, total=False):
 class _SceneFile(TypedDict, total=False):
     scene: _Path  # supplies what the other keywords leave out
 
-class _FrameOptions(_Camera, _Classification, _Emission, _Light, _Method, _Device, _SceneFile, total=False):
+class _FrameOptions(_Volumes, _Camera, _Classification, _Emission, _Light, _Method, _Device, _SceneFile, total=False):
     output: _Section  # has no effect, but belongs to a whole scene
 
 class _RendererOptions(_FrameOptions, total=False):
@@ -124,7 +127,7 @@ class _OnceOptions(_Part, _FrameOptions, total=False):
     no_data: float | Literal["none"] | None
     temperature: ArrayLike | None
 
-class _SceneOptions(_Input, _Camera, _Classification, _Emission, _Light, _Method, _Output, _SceneFile, total=False): ...
+class _SceneOptions(_Input, _Volumes, _Camera, _Classification, _Emission, _Light, _Method, _Output, _SceneFile, total=False): ...
 
 class _BakeOptions(_Input, _Classification, _Emission, _SceneFile, total=False):
     spacing: float | Sequence_[float] | NDArray[Any]
