@@ -66,7 +66,7 @@ void MergedDrawing::solveScattering(const Lighting& lighting, const Progress& pr
 }
 
 /// Sets the light of each volume's constants, of what is scattered by all of them.
-void MergedDrawing::prepareLights(Frame& frame, std::vector<Lighting>& lightings, const Progress& progress) {
+void MergedDrawing::prepareLights(Frame& frame, std::span<const Lighting> lightings, const Progress& progress) {
   Lighting common = *frame.settings.lighting;
   for (const Lighting& lighting : lightings) common.surface = std::min(common.surface, lighting.surface);
   solveScattering(common, progress);
@@ -78,68 +78,81 @@ void MergedDrawing::prepareLights(Frame& frame, std::vector<Lighting>& lightings
   }
 }
 
+/// Appends the volume's constants, and its rays on a lattice of its own.
+void MergedDrawing::prepareRays(Medium& medium, const Camera& camera, Frame& frame, const Progress& progress) const {
+  DeviceScene& scene = medium.scene;
+  scene.frameTimes.clear();
+  const auto constantsNow = [&] { return makeFrameConstants(device_, scene.built.volume, scene.tableSettings, camera, frame.settings); };
+  FrameConstants constants = constantsNow();
+  if (constants.detail.coarsest > 0 && !scene.built.hasBlocks()) {
+    scene.builtWithBlocks(progress);
+    constants = constantsNow();  // with the blocks' addresses
+  }
+  frame.rays.push_back(makeGatherFrame(scene.built.volume, camera, frame.settings, constants.detail, constants.endTransmittance));
+  constants.detail.finest = frame.rays.back().finest;
+  frame.constants.push_back(std::move(constants));
+}
+
+/// The volumes between a medium and its lights.
+std::vector<ShadowingVolume> MergedDrawing::othersThan(const Medium& medium) const {
+  std::vector<ShadowingVolume> others;
+  for (const Medium& other : media_)
+    if (const DeviceVolume& volume = other.scene.built.volume; &other != &medium)
+      others.push_back({&other.scene.lights(), volume.scalarBricks.has_value(), volume.layout.dimensions, volume.indexToWorld});
+  return others;
+}
+
+/// Makes what the rays of volume `i` read. `lighting` is null without lights.
+void MergedDrawing::prepareVolume(std::size_t i, const Lighting* lighting, Frame& frame, const Progress& progress) {
+  Medium& medium = media_[i];
+  DeviceScene& scene = medium.scene;
+  std::vector<ShadowingVolume> others;
+  if (lighting != nullptr) others = othersThan(medium);
+  shader::GatherFrame& rays = frame.rays[i];
+  const GatherVolume::Shading shading{.frame = frame.constants[i],
+                                      .table = nullptr,
+                                      .lighting = lighting,
+                                      .lights = lighting != nullptr ? &scene.lights() : nullptr,
+                                      .scattered = lighting != nullptr ? scattered() : nullptr,
+                                      .axes = {someRayHasAxis(rays, 0), someRayHasAxis(rays, 1), someRayHasAxis(rays, 2)},
+                                      .keptQuadBytes = planKeptQuadBytes(device_) / media_.size(),
+                                      .others = others};
+  std::optional<GatherVolume>& gather = medium.gather;
+  try {
+    if (!gather) gather.emplace(device_, scene.hostVolume, scene.classification, scene.built, scene.frameTimes);
+    gather->prepare(shading);
+    Commands commands(device_);
+    gather->record(commands, shading);
+    if (!commands.empty()) scene.submit(commands, progress);
+  } catch (...) {
+    gather.reset();
+    throw;
+  }
+  gather->describe(rays);
+  frame.parts.push_back({&*gather, &scene.built.volume, rays});
+}
+
 MergedDrawing::Frame MergedDrawing::prepare(const Camera& camera, const FrameSettings& wanted, const Progress& progress) {
   checkCamera(camera);
   if (!wanted.gathers())
     fail(ErrorKind::Usage, "several volumes are drawn by gathering alone: leave out {} and other options of splats",
          Parameter("draw", "splats"));
   times_.clear();
-  Frame frame{.settings = wanted, .constants = {}, .parts = {}};
-  if (frame.settings.lighting) frame.settings.lighting->attenuation = LightAttenuation::Exact;
-  const bool lit = frame.settings.lighting.has_value();
-  if (lit && !GatherVolume::lightsSamples(&*frame.settings.lighting))
+  Frame frame{.settings = wanted};
+  std::optional<Lighting>& lighting = frame.settings.lighting;
+  if (lighting) lighting->attenuation = LightAttenuation::Exact;
+  if (lighting && !GatherVolume::lightsSamples(&*lighting))
     fail(ErrorKind::Usage, "several volumes are lit by at most {} lights, and there are {}: use fewer, or {}", shader::kMaxSampleLights,
-         frame.settings.lighting->lights.size(), Parameter("environment"));
-  std::vector<shader::GatherFrame> lattices;
-  for (Medium& medium : media_) {
-    DeviceScene& scene = medium.scene;
-    scene.frameTimes.clear();
-    const auto constantsNow = [&] { return makeFrameConstants(device_, scene.built.volume, scene.tableSettings, camera, frame.settings); };
-    FrameConstants constants = constantsNow();
-    if (constants.detail.coarsest > 0 && !scene.built.hasBlocks()) {
-      scene.builtWithBlocks(progress);
-      constants = constantsNow();  // with the blocks' addresses
-    }
-    lattices.push_back(makeGatherFrame(scene.built.volume, camera, frame.settings, constants.detail, constants.endTransmittance));
-    constants.detail.finest = lattices.back().finest;
-    frame.constants.push_back(std::move(constants));
-  }
-  shareLattice(lattices, frame.settings);
-  std::vector<Lighting> lightings;
-  if (lit) {
-    lightings.assign(media_.size(), *frame.settings.lighting);
+         lighting->lights.size(), Parameter("environment"));
+  for (Medium& medium : media_) prepareRays(medium, camera, frame, progress);
+  shareLattice(frame.rays, frame.settings);
+  std::vector<Lighting> lightings;  // of each volume
+  if (lighting) {
+    lightings.assign(media_.size(), *lighting);
     for (std::size_t i = 0; i < media_.size(); ++i) lightings[i].surface = media_[i].surface.value_or(lightings[i].surface);
     prepareLights(frame, lightings, progress);
   }
-  for (std::size_t i = 0; i < media_.size(); ++i) {
-    DeviceScene& scene = media_[i].scene;
-    std::vector<ShadowingVolume> others;
-    for (std::size_t j = 0; j < media_.size() && lit; ++j)
-      if (const DeviceVolume& other = media_[j].scene.built.volume; j != i)
-        others.push_back({&media_[j].scene.lights(), other.scalarBricks.has_value(), other.layout.dimensions, other.indexToWorld});
-    std::optional<GatherVolume>& gather = media_[i].gather;
-    const GatherVolume::Shading shading{
-        .frame = frame.constants[i],
-        .table = nullptr,
-        .lighting = lit ? &lightings[i] : nullptr,
-        .lights = lit ? &scene.lights() : nullptr,
-        .scattered = lit && scatters_ ? &*scattering_ : nullptr,
-        .axes = {someRayHasAxis(lattices[i], 0), someRayHasAxis(lattices[i], 1), someRayHasAxis(lattices[i], 2)},
-        .keptQuadBytes = planKeptQuadBytes(device_) / media_.size(),
-        .others = others};
-    try {
-      if (!gather) gather.emplace(device_, scene.hostVolume, scene.classification, scene.built, scene.frameTimes);
-      gather->prepare(shading);
-      Commands commands(device_);
-      gather->record(commands, shading);
-      if (!commands.empty()) scene.submit(commands, progress);
-    } catch (...) {
-      gather.reset();
-      throw;
-    }
-    gather->describe(lattices[i]);
-    frame.parts.push_back({&*gather, &scene.built.volume, lattices[i]});
-  }
+  for (std::size_t i = 0; i < media_.size(); ++i) prepareVolume(i, lighting ? &lightings[i] : nullptr, frame, progress);
   return frame;
 }
 

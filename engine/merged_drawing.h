@@ -5,6 +5,7 @@
 #include <deque>
 #include <memory>
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "engine/device_scene.h"
@@ -36,12 +37,16 @@ class MergedDrawing {
   struct Medium;
   struct Frame {
     FrameSettings settings;
-    std::vector<FrameConstants> constants;
-    std::vector<MergedPass::Part> parts;
+    std::vector<FrameConstants> constants = {};  ///< of each volume
+    std::vector<shader::GatherFrame> rays = {};
+    std::vector<MergedPass::Part> parts = {};
   };
   Frame prepare(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   void solveScattering(const Lighting& lighting, const Progress& progress);
-  void prepareLights(Frame& frame, std::vector<Lighting>& lightings, const Progress& progress);
+  void prepareRays(Medium& medium, const Camera& camera, Frame& frame, const Progress& progress) const;
+  void prepareLights(Frame& frame, std::span<const Lighting> lightings, const Progress& progress);
+  std::vector<ShadowingVolume> othersThan(const Medium& medium) const;
+  void prepareVolume(std::size_t i, const Lighting* lighting, Frame& frame, const Progress& progress);
   void submit(Commands& commands, const Progress& progress);
 
   const Device& device_;

@@ -9,9 +9,6 @@
 
 const float kMaxLightDepth = 0.99 * kOpaqueDepth;  // approximately the end of the code of depths along rays
 
-// The mean of exp(-depth) over a segment along which the depth changes linearly from 0 to x, of either sign.
-float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
-
 // The light that arrives at a segment of a ray, and that it emits.
 struct SegmentLight {
   vec4 begin, change;   // optical depths towards the lights at the segment's beginning, and their change along it

@@ -123,4 +123,7 @@ void addToSlabs(vec3 light, float depth, vec3 depths, float near, float far, boo
   } while (more);
 }
 
+// The mean of exp(-depth) over a segment along which the depth changes linearly from 0 to x, of either sign.
+float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-x)) / x; }
+
 #endif

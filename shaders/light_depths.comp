@@ -34,12 +34,6 @@ float extinctionOf(ivec3 cell) {
   return Extinctions(push.extinction).values[push.level.firstRank + rankIn(word, bit)];
 }
 
-// On the side from which rays come, there is nothing in front of the first plane.
-float depthUpTo(FaceRays fan, vec3 position) {
-  const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
-  return plane < 0 ? 0.0 : rayDepth(fan, position);
-}
-
 // The depth in front of a layer lacks half of the layer. For scalars the depth is that of the next voxel
 // towards the light; the rest is integrated at the sample, from the change of the scalar there.
 float depthOf(ivec3 cell) {

@@ -13,8 +13,6 @@ layout(binding = 1, rgba32f) writeonly uniform imageBuffer colorEnergy;
 layout(binding = 2, r32f) writeonly uniform imageBuffer distances;
 layout(binding = 3) uniform textureBuffer slabEntries;
 
-vec3 meanTransmittance(vec3 x) { return mix((1.0 - exp(-x)) / max(x, 1e-6), 1.0 - x * (0.5 - x / 6.0), lessThan(x, vec3(0.02))); }
-
 void main() {
   ivec2 index = sampleOfThread();
   if (any(greaterThanEqual(index, frame.seenExtent))) return;
@@ -56,7 +54,8 @@ void main() {
       }
       if (!kTinted) depths = sum.aaa;
       const float rest = transmittance * exp(-sum.a);
-      color += (kTinted ? colorTransmittance : vec3(transmittance)) * sum.rgb * meanTransmittance(depths);
+      const vec3 before = kTinted ? colorTransmittance : vec3(transmittance);
+      [[unroll]] for (int c = 0; c < 3; ++c) color[c] += before[c] * sum[c] * meanTransmittance(depths[c]);
       if (kTinted) colorTransmittance *= exp(-depths);
       distance += (transmittance - rest) * distanceOf(slab);
       transmittance = rest;

@@ -22,12 +22,6 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LightDepths 
 
 const float kAtSource = 1e-3;  // in voxels: at a smaller distance from a light the direction is undefined
 
-// On the side from which rays come, there is nothing in front of the first plane.
-float depthUpTo(FaceRays fan, vec3 position) {
-  const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
-  return plane < 0 ? 0.0 : rayDepth(fan, position);
-}
-
 // The depth between the light and a position in the index space of the other volume: that at the end of what the way to the light has of
 // its box, between the rays' depths on the planes in front and behind.
 float depthAt(vec3 position) {

@@ -72,4 +72,10 @@ float rayDepth(FaceRays fan, vec3 position) {
   return max(sum, 0.0);
 }
 
+// On the side from which rays come, there is nothing in front of the first plane.
+float depthUpTo(FaceRays fan, vec3 position) {
+  const int plane = (int(round(position[fan.axis])) - fan.firstPlane) * fan.direction;
+  return plane < 0 ? 0.0 : rayDepth(fan, position);
+}
+
 #endif

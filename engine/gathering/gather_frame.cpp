@@ -226,11 +226,11 @@ std::optional<SampleRectangle> samplesThatSee(const DeviceVolume& volume, const 
 void shareLattice(std::span<shader::GatherFrame> frames, const FrameSettings& settings) {
   const shader::GatherFrame& finest = *std::ranges::min_element(frames, {}, &shader::GatherFrame::pitch);
   shader::GatherFrame common = finest;
-  // Every sample and every pixel: seen rectangles are of each frame's own lattice.
   common.sampleTolerance = std::ranges::min(frames, {}, &shader::GatherFrame::sampleTolerance).sampleTolerance;
   common.distanceTolerance = std::ranges::min(frames, {}, &shader::GatherFrame::distanceTolerance).distanceTolerance;
   common.endTransmittance = std::ranges::min(frames, {}, &shader::GatherFrame::endTransmittance).endTransmittance;
   const double pitch = double(common.pitch);
+  // The rectangle that each frame sees is in samples of its own lattice.
   for (const shader::GatherFrame& frame : frames) {
     const double scale = double(frame.pitch) / pitch;
     // Position on the image of a sample of the frame, in samples of the common lattice.

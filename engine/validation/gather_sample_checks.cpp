@@ -4,9 +4,11 @@
 
 #include <algorithm>
 #include <array>
+#include <cmath>
 
 #include "engine/core/error.h"
 #include "engine/image/metrics.h"
+#include "engine/reference/reference_hierarchy.h"
 #include "engine/validation/max_error.h"
 #include "engine/validation/stage_frames.h"
 
@@ -14,6 +16,11 @@ namespace freevoxels {
 
 namespace {
 
+/// Half a step of the 11 bits that a half has, and of 9 bits.
+constexpr double kExtinctionTolerance = 5e-4, kSourceTolerance = 2e-3;
+/// Optical depths of a voxel that halves hold with fewer bits.
+constexpr double kMinDepth = 1e-6;
+constexpr double kPitchTolerance = 1e-6;
 constexpr double kBeside = 1e-5;  ///< distance of rays beside a sample's, as a part of the image's width
 
 /// A sum of samples, of which a small energy of the reference leaves the distance out.
@@ -45,6 +52,49 @@ double errorOf(const Channel& channel, const GatherSums& sums, const GatherSums&
 
 std::string sampleText(glm::ivec2 samples, std::size_t i) {
   return fmt::format("sample ({}, {})", int(i) % samples.x, int(i) / samples.x);
+}
+
+Check checkLattice(const GatherLattice& lattice, const GatherLattice& reference, const char* frame) {
+  MaxError worst;
+  const auto where = [&] {
+    return fmt::format("{} x {} samples, reference {} x {}", lattice.samples.x, lattice.samples.y, reference.samples.x,
+                       reference.samples.y);
+  };
+  worst.take(relativeDifference(lattice.pitch, reference.pitch), where);
+  worst.take(glm::length(lattice.first - reference.first) / double(reference.samples.x), where);
+  if (lattice.samples != reference.samples) worst.take(1.0, where);
+  return worst.atMost(kPitchTolerance, fmt::format("gather lattice: {}", frame), "relative");
+}
+
+std::string blockText(glm::ivec3 n, std::size_t i, std::size_t level) {
+  return fmt::format("block ({}, {}, {}) of level {}", int(i) % n.x, int(i) / n.x % n.y, int(i) / n.x / n.y, level);
+}
+
+void checkBlocks(const GatherStages& stages, const ValidationScene& scene, bool lit, const char* frame, std::vector<Check>& checks) {
+  MaxError extinction, source, emission;
+  const double least = kMinDepth / scene.volume.voxelSize();
+  for (std::size_t level = 0; level < stages.blocks.size(); ++level) {
+    const GatherBlocks& blocks = stages.blocks[level];
+    if (!blocks.exists()) continue;
+    LevelData medium = stages.medium[level];
+    if (level == 0) medium = referenceVoxelLevel(scene.volume, scene.classification, medium.extinction, {}, medium.emission);
+    const GatherBlocks expected = referenceGatherBlocks(medium, int(level), scene.volume.dimensions, scene.classification.albedo, lit);
+    FV_CHECK_EQ(blocks.extinction.size(), expected.extinction.size());
+    FV_CHECK_EQ(blocks.emission.size(), expected.emission.size());
+    for (std::size_t i = 0; i < blocks.extinction.size(); ++i) {
+      const auto where = [&] { return blockText(blocks.dimensions, i, level); };
+      extinction.take(std::abs(blocks.extinction[i] - expected.extinction[i]) / std::max(expected.extinction[i], least), where);
+      const auto apart = [&](glm::dvec3 stored, glm::dvec3 wanted) {
+        return largestComponent(glm::abs(stored - wanted)) / std::max(largestComponent(wanted), least);
+      };
+      source.take(apart(blocks.source[i], expected.source[i]), where);
+      if (!expected.emission.empty()) emission.take(apart(blocks.emission[i], expected.emission[i]), where);
+    }
+  }
+  checks.push_back(extinction.atMost(kExtinctionTolerance, fmt::format("gather blocks: extinction, {}", frame), "relative"));
+  checks.push_back(source.atMost(kSourceTolerance, fmt::format("gather blocks: source, {}", frame), "relative"));
+  if (scene.classification.emission && lit)
+    checks.push_back(emission.atMost(kSourceTolerance, fmt::format("gather blocks: emission, {}", frame), "relative"));
 }
 
 std::vector<GatherSums> comparedSamples(const ReferenceGather& reference, const GatherStages& stages, double tolerance, glm::ivec2 size) {
