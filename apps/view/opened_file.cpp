@@ -36,6 +36,7 @@ void openVolume(ViewState& state, const std::string& file) {
   scene.input = {.volume = file};
   scene.classification = {};
   scene.emission = {};
+  scene.added.clear();
   scene.camera = {.size = scene.camera.size};
   std::optional<Sequence> sequence;
   if (isPattern(file)) {

@@ -16,7 +16,8 @@ constexpr int kMaxFrames = 1'000'000;
 }  // namespace
 
 void ViewOptions::add(CLI::App& app) {
-  for (const char* section : {"input", "output", "classification", "emission", "camera", "light"}) scene.addSection(app, section);
+  for (const char* section : {"input", "volumes", "output", "classification", "emission", "camera", "light"})
+    scene.addSection(app, section);
   scene.addFile(app);
   scene.addMethod(app);
   device.add(app);

@@ -34,19 +34,31 @@ double secondsToQuit(ViewerSession& session) {
 
 }  // namespace
 
-TEST_F(Viewer, TheWindowShowsTheImageOfRender) {
-  const std::string options =
-      " --resolution 32 --orbit 200,15 --background 0.1,0.2,0.3 --light direction=1,1,0";
-  const ProgramResult shown = view("procedural:cloud --screenshot @window.png" + options);
-  EXPECT_EQ(shown.exitCode, 0);
-  EXPECT_EQ(shown.err, "");
-  const std::string size = fmt::format(" --size {}x{}", kWindow.x - kPanel, kWindow.y - 2 * kBar);
-  expectSuccess(run("render procedural:cloud @image.png --quiet" + options + size));
-  const Image window = readPng(folder / "window.png"), drawn = readPng(folder / "image.png");
-  ASSERT_EQ(window.size, kWindow);
-  EXPECT_EQ(differingPixels(window, drawn), 0);
-  EXPECT_NE(drawn.pixels[std::size_t(400 * drawn.size.x + 470)], drawn.pixels.front());
-  EXPECT_EQ(folder.fileCount(), 2u) << "a screenshot remembers no file";
+class ViewerImage : public Viewer {
+ protected:
+  void expectWindowOfRender(const std::string& more) {
+    const std::string options = " --resolution 32 --orbit 200,15 --background 0.1,0.2,0.3" + more;
+    const ProgramResult shown = view("procedural:cloud --screenshot @window.png" + options);
+    EXPECT_EQ(shown.exitCode, 0);
+    EXPECT_EQ(shown.err, "");
+    const std::string size = fmt::format(" --size {}x{}", kWindow.x - kPanel, kWindow.y - 2 * kBar);
+    expectSuccess(run("render procedural:cloud @image.png --quiet" + options + size));
+    const Image window = readPng(folder / "window.png"), drawn = readPng(folder / "image.png");
+    ASSERT_EQ(window.size, kWindow);
+    EXPECT_EQ(differingPixels(window, drawn), 0);
+    EXPECT_NE(drawn.pixels[std::size_t(400 * drawn.size.x + 470)], drawn.pixels.front());
+    EXPECT_EQ(folder.fileCount(), 3u) << "a screenshot remembers no file";
+  }
+};
+
+/// Of one volume, of several, and of several in a scene file.
+TEST_F(ViewerImage, TheWindowShowsTheImageOfRender) {
+  writeBytes(folder / "two.json", R"({"volumes": [{"volume": "procedural:cube", "resolution": 9, "density-scale": 2}]})");
+  for (const char* more :
+       {" --light direction=1,1,0", " --unlit --add procedural:fire,resolution=16,transform=0.2,0,0", " --unlit --scene @two.json"}) {
+    SCOPED_TRACE(more);
+    expectWindowOfRender(more);
+  }
 }
 
 TEST_F(Viewer, WhatIsTakenAwayIsWhatTheProgramsMake) {
