@@ -106,6 +106,7 @@ void VolumePanel::draw(ViewState& state, GridList& grids) {
   drawGrids(state, grids);
   drawClipping(state);
   frames_.draw(state);
+  added_.draw(state);
   ImGui::PopID();
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/added_panel.h"
 #include "apps/view/async_value.h"
 #include "apps/view/view_state.h"
 #include "engine/volume/vdb.h"
@@ -67,6 +68,7 @@ class VolumePanel {
   static void drawGrids(ViewState& state, GridList& grids);
 
   SequencePanel frames_;
+  AddedPanel added_;
   std::optional<int> resolution_;  ///< while it is dragged
 };
 

@@ -1,0 +1,33 @@
+#pragma once
+// The list of the volumes besides the first one, in the panel "Volume".
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+#include "apps/view/view_state.h"
+#include "engine/description/scene_description.h"
+
+namespace freevoxels {
+
+class AddedPanel {
+ public:
+  void draw(ViewState& state);
+
+ private:
+  /// A volume of the list, which is not drawn while its eye is closed.
+  struct Entry {
+    AddedVolume volume;
+    bool isShown = true;
+  };
+
+  void follow(const ViewState& state);
+  void drawEntry(ViewState& state, std::size_t index, bool& isRemoved);
+  void drawAdding(ViewState& state);
+  std::vector<AddedVolume> shown() const;
+
+  std::vector<Entry> entries_;
+  std::string typed_;  ///< the volume to add
+};
+
+}  // namespace freevoxels
