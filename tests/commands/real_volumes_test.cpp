@@ -45,8 +45,8 @@ TEST_F(RealVolumes, FiresShine) {
     if (!std::filesystem::exists(kData / name)) continue;
     const auto draw = [&](const char* command) {
       Arguments arguments{command, (kData / name).string(), (folder / "a.png").string()};
-      // No ambient light, which takes the oracle minutes; a pixel is about half a voxel.
-      for (const char* word : {"--size", "32x32", "--quiet", "--background", "0,0,0", "--emission", "--light", "direction=0.3,1,0.4"})
+      // No ambient light, which takes the oracle minutes; a pixel is about a voxel.
+      for (const char* word : {"--size", "24x24", "--quiet", "--background", "0,0,0", "--emission", "--light", "direction=0.3,1,0.4"})
         arguments.emplace_back(word);
       expectSuccess(runFreevoxels(arguments));
       return readPng(folder / "a.png");

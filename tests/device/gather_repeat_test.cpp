@@ -86,15 +86,15 @@ TEST_F(GatherRepeatTest, FramesAndSharesHaveTheSameBitsEveryTimeAndWithAnyNumber
   std::size_t scene = 0;
   for (const Scene& each : scenes()) {
     Renderer first(*one.device, each.volume, each.classification, {}), second(*two.device, each.volume, each.classification, {});
-    const std::vector<View> seen = views(each.volume, scene % 8 == 0, scene % 4 == 0);
-    for (std::size_t view = 0; view < seen.size(); ++view) {
+    const std::vector<View> seen = views(each.volume, scene == 1, scene % 9 == 1);
+    for (std::size_t view = scene % 2; view < seen.size(); view += 2) {  // half of them, in turn
       const auto& [camera, settings] = seen[view];
       SCOPED_TRACE(testing::Message() << "scene " << scene << ", view " << view);
       const Image image = first.render(camera, settings);
       EXPECT_GT(std::ranges::count_if(image.pixels, [](const glm::vec4& pixel) { return pixel.a > 0.01f; }), 500);
       expectSame(first.render(camera, settings), image);
       expectSame(second.render(camera, settings), image);
-      if (view != scene % 3) continue;  // shares take longer
+      if (view != scene % 4) continue;  // shares take longer
       const FixedSums whole = second.renderShares(camera, settings, {});
       for (const int count : {2, 3}) {
         FixedSums sums = first.renderShares(camera, settings, {0, count});
