@@ -108,13 +108,14 @@ void Baker::bakeProcedural(const std::string& name) const {
 }
 
 bool Baker::bakeParts() const {
-  if (fvx::isFvx(scene_.input.volume)) return false;
-  const std::unique_ptr<const VdbParts> parts = VdbParts::open(
-      scene_.input.volume,
-      {.grid = scene_.input.grid.value_or(""),
-       .more = {.temperature = scene_.emission.grid(), .albedo = scene_.classification.grid()},
-       .noData = scene_.input.noData},
-      kMaxBytesInMemory);
+  if (fvx::isFvx(scene_.input.volume) || !scene_.classification.channels.empty()) return false;
+  const std::unique_ptr<const VdbParts> parts =
+      VdbParts::open(scene_.input.volume,
+                     {.grid = scene_.input.grid.value_or(""),
+                      .more = {.temperature = scene_.emission.grid(), .albedo = scene_.classification.grid()},
+                      .noData = scene_.input.noData,
+                      .labels = scene_.classification.labelRequest()},
+                     kMaxBytesInMemory);
   if (!parts) return false;
   const Classification classification = scene_.resolveClassification(parts->sample());
   if (remarks_) remarks_({.volume = borrowed(parts->sample()), .classification = classification});

@@ -29,7 +29,7 @@ Outline outlineOf(const SceneDescription& description, const std::string& input)
     const Volume volume = bakedOutline(*file);
     outline.corners = boxOf(volume).points;
     outline.voxels = volume.activeVoxels;
-  } else if (!proceduralName(input)) {
+  } else if (!proceduralName(input) && scene.classification.channels.empty()) {
     const auto extent = extentOfVdb(input, scene.input.grid.value_or(""),
                                     {.temperature = scene.emission.grid(), .albedo = std::nullopt, .mayBeMissing = true});
     if (!extent) return outline;
@@ -160,8 +160,7 @@ class Survey {
     const EmissionDescription& given = description_.emission;
     if (!brightest_.volume || given.emission == false) return std::nullopt;
     const Emission scales = given.scales(hottest_);
-    const glm::dvec3 light = emittedLight(scales, hottest_.maximum);
-    if (!given.isAsked() && !(light.r + light.g + light.b > 0.0)) return std::nullopt;
+    if (!given.isAsked() && !(brightestLight(scales, hottest_, hottest_.maximum) > 0.0)) return std::nullopt;
     return scales;
   }
 

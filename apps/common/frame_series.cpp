@@ -9,6 +9,7 @@
 #include "apps/common/colored_parts.h"
 #include "apps/common/failure.h"
 #include "apps/common/film_scenes.h"
+#include "apps/common/frame_layers.h"
 #include "apps/common/output_options.h"
 #include "apps/common/share_group.h"
 #include "engine/cube_level.h"
@@ -208,7 +209,9 @@ void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::sp
     if (options_.drawsShares())
       drawShares(renderer, scene, view.settings, jobs[i]);
     else
-      complete(renderer.render(scene.camera, view.settings, progress_.progress()), isTransparent(renderer), scene, jobs[i]);
+      complete(renderFrame(renderer, device_, options_.scene.description.of(jobs[i].input), scene, view.settings,
+                           options_.scene.description.output.aovs, progress_.progress()),
+               isTransparent(renderer), scene, jobs[i]);
     addTimes(report_.stages, renderer.frameTimings());
   }
   finishAddingUp();

@@ -31,8 +31,10 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"float", "Write 32-bit floats to an .exr [16-bit]"},
     {"png-bits", "Bits a channel in a .png [8]"},
     {"aov",
-     "Adds channels to an .exr, of depth, position, normal and transmittance, with commas between them: Z, the mean distance "
-     "along the viewing axis; P, the point there in the world; N, its normal; transmittance.Y, 1 - alpha"},
+     "Adds channels to an .exr, of depth, position, normal, transmittance, lights and channels, with commas between them: Z, the mean "
+     "distance "
+     "along the viewing axis; P, the point there in the world; N, its normal; transmittance.Y, 1 - alpha; a layer for each light, light1.R "
+     "and so on, or for each channel of --channel, of which the colours are the sum"},
     {"crop", "Writes only these pixels of the image: column and row of the top left one, width and height; the whole image is drawn"},
 
     {"density-scale",
@@ -42,6 +44,14 @@ const std::vector<OptionHelp> kVolumeHelp{
      "Grid of vectors of the file with the colours, linear, 0..1; none for none [Cd, color or a like name, if there is one]"},
     {"transfer-function",
      "Colour and opacity by scalar, instead of the above: a file, or JSON that begins with { [for scans one made from the histogram]"},
+    {"channel",
+     "Draws several grids of the file together, each by a channel option: its name or number from 0, its colour, a weight of its density, "
+     "the "
+     "values at which it begins and is full, and whether it sends out light, as dyes do, in place of scattering it: "
+     "dapi:blue:100,4000:emission"},
+    {"labels",
+     "The values are labels, which are drawn as solids, each with its colour: all, none, or which of them, with colours and opacities of a "
+     "voxel: 1,2=#d0a080,7=red@0.3; 0 is empty [all, of grids of whole numbers, booleans and masks]"},
     {"classification",
      "What a transfer function is applied to: interpolated scalars (post), or voxels (pre), as always for splats and volumes "
      "with emission [post]"},

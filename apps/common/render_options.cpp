@@ -63,6 +63,8 @@ FrameSettings RenderOptions::frameSettings() const {
 void RenderOptions::checkShares(std::span<const FrameJob> frames) const {
   frameSettings();
   shares.check();
+  if (drawsShares() && scene.description.output.aovs.hasLayers())
+    fail(ErrorKind::Usage, "{} are made of whole frames, which processes do not share: draw them by one", Parameter("aov", "lights"));
   if (!shares.sums) return;
   for (const FrameJob& frame : frames)
     if (frame.files.size() != 1 || !isExr(frame.files.front())) fail(ErrorKind::Usage, "--sums writes a single file: name one .exr as OUT");

@@ -3,6 +3,7 @@
 #include <functional>
 #include <utility>
 
+#include "apps/common/frame_layers.h"
 #include "apps/common/frame_view.h"
 #include "apps/common/output_options.h"
 #include "apps/common/program.h"
@@ -98,6 +99,7 @@ SceneRenderer::SceneRenderer(std::shared_ptr<const SharedVolume> volume, Json ke
       context_(context ? std::move(context) : sharedContext(read(Json::object())->device)),
       kept_(*context_->device) {
   own_ = read(Json::object())->scene;
+  inMemory_ = volumesInMemory(own_);
 }
 
 SceneRenderer::~SceneRenderer() {
@@ -190,7 +192,9 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
 Image SceneRenderer::drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels,
                                const Progress& progress) {
   const auto work = [&](Renderer& renderer, const Camera& camera, const FrameSettings& settings, const Progress& report) {
-    Image image = renderer.render(camera, settings, report);
+    Scene seen = scene_;
+    seen.camera = camera;
+    Image image = renderFrame(renderer, *context_->device, options.scene, seen, settings, channels, report);
     addChannels(image, channels, camera);
     return image;
   };

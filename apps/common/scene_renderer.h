@@ -90,6 +90,7 @@ class SceneRenderer {
   const bool choosesDevice_;  ///< whether the keywords choose the device
   const std::shared_ptr<DeviceContext> context_;
   SceneDescription own_;  ///< of the renderer's own keywords
+  std::vector<std::shared_ptr<const Volume>> inMemory_;  ///< the further volumes of own_ that have no file
 
   // While context_->turns is held:
   bool isDrawing_ = false;

@@ -53,7 +53,7 @@ double bytesPerVoxel(const GridInfo& grid) {
 
 std::vector<std::string> usesOf(const GridInfo& grid) {
   std::vector<std::string> uses;
-  if (grid.unusable.empty()) uses.emplace_back("density");
+  if (grid.unusable.empty()) uses.emplace_back(grid.areLabels ? "labels" : "density");
   if (grid.isTemperature && grid.activeVoxels > 0) uses.emplace_back("temperature");
   if (grid.isAlbedo) uses.emplace_back("albedo");
   return uses;

@@ -82,6 +82,8 @@ void OracleCommand::draw() const {
   logOptions(options);
 
   const auto start = std::chrono::steady_clock::now();
+  if (description.output.aovs.hasLayers())
+    fail(ErrorKind::Usage, "the oracle has no layers: leave lights and channels out of {}", Parameter("aov"));
   const OracleSettings settings{
       .size = description.camera.size, .depth = description.output.aovs.needDepth(), .lighting = scene.lighting};
   std::vector<PlacedMedium> volumes{{scene.volume.get(), &scene.classification}};

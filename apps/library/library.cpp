@@ -3,10 +3,14 @@
 #include <fmt/ranges.h>
 #include <volk.h>
 
+#include <algorithm>
 #include <cmath>
+#include <nlohmann/json.hpp>
 
+#include "apps/common/keyword_options.h"
 #include "apps/library/include/freevoxels/vulkan.h"
 #include "apps/library/translation.h"
+#include "engine/core/json_file.h"
 #include "engine/volume/volume_of_scalars.h"
 #include "engine/vulkan/device_requirements.h"
 #include "engine/vulkan/queue.h"
@@ -15,19 +19,32 @@ namespace freevoxels::v1 {
 
 namespace {
 
-freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement) {
+/// The values of a box, of which those of further channels follow each other.
+ScalarBricks bricksOf(std::span<const float> values, glm::ivec3 size) {
+  return ScalarBricks::make(size, [&](glm::ivec3 voxel) {
+    const std::size_t row = std::size_t(voxel.y) + std::size_t(size.y) * std::size_t(voxel.z);
+    const float value = values[std::size_t(voxel.x) + std::size_t(size.x) * row];
+    return std::isnan(value) ? kInactiveVoxel : value;
+  });
+}
+
+freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement,
+                            std::string_view scene) {
   const auto& [x, y, z] = dimensions;
-  if (std::min({x, y, z}) < 1 || std::size_t(x) * std::size_t(y) * std::size_t(z) != values.size())
+  const KeywordOptions options({parseJson("scene", "of the values", scene)}, {"classification"});
+  const std::optional<Labels>& labels = options.scene.classification.labels;
+  const std::vector<ChannelStyle>& channels = options.scene.classification.channels;
+  const std::size_t voxels = std::size_t(std::max(x, 0)) * std::size_t(std::max(y, 0)) * std::size_t(std::max(z, 0));
+  if (std::min({x, y, z}) < 1 || values.size() % voxels != 0 || (values.size() != voxels && channels.empty()))
     fail(freevoxels::ErrorKind::Input, "{} values are not a box of {} x {} x {} voxels", values.size(), x, y, z);
   const auto vector = [](const std::array<double, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
   const glm::ivec3 size(x, y, z);
-  return volumeOfScalars(ScalarBricks::make(size,
-                                            [&](glm::ivec3 voxel) {
-                                              const std::size_t row = std::size_t(voxel.y) + std::size_t(y) * std::size_t(voxel.z);
-                                              const float value = values[std::size_t(voxel.x) + std::size_t(x) * row];
-                                              return std::isnan(value) ? kInactiveVoxel : value;
-                                            }),
-                         latticeTransform(vector(placement.spacing), vector(placement.origin)), false);
+  const glm::dmat4 transform = latticeTransform(vector(placement.spacing), vector(placement.origin));
+  if (channels.empty()) return volumeOfScalars(bricksOf(values, size), transform, false, labels && !labels->isNone() ? &*labels : nullptr);
+  std::vector<ScalarBricks> ofChannels;
+  for (const ChannelStyle& channel : channels)
+    ofChannels.push_back(bricksOf(values.subspan(channelNumber(channel, values.size() / voxels) * voxels, voxels), size));
+  return volumeOfChannels(std::move(ofChannels), transform, channels);
 }
 
 DeviceOptions limited(int mebibytes) {
@@ -99,9 +116,10 @@ Volume Volume::open(const std::filesystem::path& file, std::string_view scene) {
   return translated([&] { return Volume(std::make_shared<const State>(openVolume(file.string(), parseScene(scene)))); });
 }
 
-Volume Volume::copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement) {
-  return translated(
-      [&] { return Volume(std::make_shared<const State>(std::make_shared<const SharedVolume>(volumeOf(values, dimensions, placement)))); });
+Volume Volume::copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement, std::string_view scene) {
+  return translated([&] {
+    return Volume(std::make_shared<const State>(std::make_shared<const SharedVolume>(volumeOf(values, dimensions, placement, scene))));
+  });
 }
 
 std::array<int, 3> Volume::dimensions() const {

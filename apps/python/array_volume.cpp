@@ -50,8 +50,8 @@ struct Source {
 
 Source sourceOf(const ArrayView& array) {
   if (array.dimensions() != 3)
-    fail(ErrorKind::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x", array.dimensions(),
-         array.dimensions() == 1 ? "" : "s");
+    fail(ErrorKind::Input, "the array has {} dimension{}: a volume needs three, ordered z, y, x, and channels before them need {}",
+         array.dimensions(), array.dimensions() == 1 ? "" : "s", Parameter("channel"));
   constexpr py::ssize_t kMax = std::numeric_limits<std::int32_t>::max();
   for (const py::ssize_t size : array.shape)
     if (size < 1 || size > kMax)
@@ -197,6 +197,26 @@ ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& mark
   });
 }
 
+/// A channel of an array that has several along its first axis.
+ArrayView channelOf(const ArrayView& array, std::size_t channel) {
+  ArrayView one = array;
+  one.data += array.strides.front() * py::ssize_t(channel);
+  one.shape.erase(one.shape.begin());
+  one.strides.erase(one.strides.begin());
+  if (array.mask) one.mask = std::make_shared<const ArrayView>(channelOf(*array.mask, channel));
+  return one;
+}
+
+Volume volumeOfChannelArray(const ArrayView& array, const std::optional<Marker>& noData, const ArrayPlacement& placement) {
+  if (array.dimensions() != 4)
+    fail(ErrorKind::Input, "the array has the shape {}: {} needs four dimensions, ordered channel, z, y, x", array.shapeText(),
+         Parameter("channel"));
+  std::vector<ScalarBricks> values;
+  for (const ChannelStyle& style : placement.channels)
+    values.push_back(readArray(channelOf(array, channelNumber(style, std::size_t(array.shape.front()))), noData));
+  return volumeOfChannels(std::move(values), placement.indexToWorld, placement.channels);
+}
+
 /// Whether the word says that every value is data.
 bool isNone(const py::object& noData) {
   return py::isinstance<py::str>(noData) && noData.cast<std::string>() == kNone;
@@ -213,11 +233,15 @@ Volume volumeOfArray(const py::object& array, const py::object& temperature, con
   if (noData && !canHold(scalars, *noData) && !(heat && canHold(*heat, *noData)))
     fail(ErrorKind::Input, "{} is {}, which no {} can be: leave it out, or give a value that the array can hold", Parameter("no-data"),
          noData->real, scalars.typeName());
+  if (!placement.channels.empty() && heat)
+    fail(ErrorKind::Usage, "{} and {} exclude each other", Parameter("channel"), Parameter("temperature"));
+  if (!placement.channels.empty()) return volumeOfChannelArray(scalars, noData, placement);
   if (heat && heat->shape != scalars.shape)
     fail(ErrorKind::Input, "{} has the shape {}, and the array has {}: they must be the same", Parameter("temperature"), heat->shapeText(),
          scalars.shapeText());
   const bool knowsNoData = !placement.noData.is_none() || scalars.mask;
-  Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld, knowsNoData);
+  Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld, knowsNoData,
+                                  placement.labels && !placement.labels->isNone() ? &*placement.labels : nullptr);
   if (!heat) return volume;
   volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*heat, noData)};
   summariseValues(*volume.temperature);

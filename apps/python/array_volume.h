@@ -4,7 +4,11 @@
 #include <pybind11/pybind11.h>
 
 #include <glm/glm.hpp>
+#include <optional>
+#include <vector>
 
+#include "engine/volume/channels.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -16,11 +20,13 @@ struct ArrayPlacement {
   glm::dmat4 indexToWorld{1.0};
   /// Value of voxels without data, in addition to NaN: a number, which is compared in the array's own type, or None.
   pybind11::object noData = pybind11::none();
+  std::optional<Labels> labels = std::nullopt;  ///< how the values are drawn if they are labels
+  std::vector<ChannelStyle> channels = {};      ///< of an array with four axes, the first of which counts channels
 };
 
-/// Reads an array (numpy_array.h) with axes (z, y, x), with any strides and byte order, without copying it first. Releases the GIL
-/// meanwhile. `temperature` is None or must have the same shape. Fails with ErrorKind::Input for other arrays, and for a value of no data
-/// that neither array can hold.
+/// Reads an array (numpy_array.h) with axes (z, y, x), or (channel, z, y, x), with any strides and byte order, without copying it first.
+/// Releases the GIL meanwhile. `temperature` is None or must have the same shape. Fails with ErrorKind::Input for other arrays, and for a
+/// value of no data that neither array can hold.
 Volume volumeOfArray(const pybind11::object& array, const pybind11::object& temperature, const ArrayPlacement& placement);
 
 }  // namespace freevoxels

@@ -111,15 +111,50 @@ bool isOfFiles(const std::string& keyword) {
                              [&](const SceneField& field) { return field.section == "input" && keywordOf(field.name) == keyword; });
 }
 
+bool isFileName(const py::object& value) {
+  return py::isinstance<py::str>(value) || py::hasattr(value, "__fspath__");
+}
+
+/// Whether a source is a list of volumes, and no list of numbers that is an array.
+bool areVolumes(const py::object& source) {
+  if (!py::isinstance<py::list>(source) && !py::isinstance<py::tuple>(source)) return false;
+  const py::sequence several(source);
+  return !several.empty() && (py::isinstance<PythonVolume>(several[0]) || isFileName(several[0]));
+}
+
+/// The keywords with the volumes behind the first one among `volumes`. Arrays become volumes, which are in `kept` as long as they are
+/// drawn.
+py::kwargs withVolumes(const py::sequence& several, const py::kwargs& keywords, py::list& kept) {
+  py::list added;
+  for (std::size_t i = 1; i < several.size(); ++i) {
+    const py::object one = several[i];
+    const bool isKnown = py::isinstance<PythonVolume>(one) || isFileName(one) || py::isinstance<py::dict>(one);
+    added.append(isKnown ? one : py::cast(volumeFromArray(py::make_tuple(one), {})));
+    kept.append(added[i - 1]);
+  }
+  if (keywords.contains("volumes"))
+    for (const py::handle more : py::list(keywords["volumes"])) added.append(more);
+  py::kwargs all;
+  for (const auto& [key, value] : keywords) all[key] = value;
+  all["volumes"] = added;
+  return all;
+}
+
 /// A file is read with all keywords, since the scene decides which of its grids are needed. Without a source it is the file of the scene.
 py::object renderOnce(const py::args& arguments, const py::object& progress, const py::object& depth, const py::object& aov,
                       const py::kwargs& named) {
-  const auto [source, keywords] = oneOf(arguments, named, "volume", "render()");
+  auto [source, keywords] = oneOf(arguments, named, "volume", "render()");
   wantedOf(depth, aov);
   progressOf(progress);  // fails before a volume is read for what cannot be called
+  py::list kept;
+  if (areVolumes(source)) {
+    const py::sequence several(source);
+    keywords = withVolumes(several, keywords, kept);
+    source = several[0];
+  }
   if (py::isinstance<PythonVolume>(source))
     return render(*makeRenderer(source.cast<const PythonVolume&>(), keywords), {}, progress, depth, aov, {});
-  const bool isFile = source.is_none() || py::isinstance<py::str>(source) || py::hasattr(source, "__fspath__");
+  const bool isFile = source.is_none() || isFileName(source);
   py::kwargs ofVolume, ofFrame;
   for (const auto& [key, value] : keywords) {
     const std::string name = keywordOf(keywordText(key));

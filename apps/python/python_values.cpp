@@ -11,7 +11,9 @@
 #include <utility>
 
 #include "apps/python/numpy_array.h"
+#include "apps/python/python_volume.h"
 #include "engine/core/error.h"
+#include "engine/core/nearest_name.h"
 #include "engine/core/printable.h"
 #include "engine/description/scene_description.h"
 
@@ -132,6 +134,7 @@ Json ValueReader::read(py::handle value, const std::string& place, int depth) co
     if (isOf(value, "numbers", "Integral")) return readWhole(py::reinterpret_steal<py::object>(PyNumber_Index(value.ptr())), place);
     return readReal(value, place);
   }
+  if (py::isinstance<PythonVolume>(value)) return nameOf(value.cast<const PythonVolume&>());
   if (py::isinstance<py::str>(value)) return readText(py::reinterpret_borrow<py::object>(value), place);
   if (py::hasattr(value, "__fspath__")) {
     const auto path = py::reinterpret_steal<py::object>(PyOS_FSPath(value.ptr()));
@@ -246,7 +249,7 @@ namespace {
 
 /// Channels of an .exr that are one array: by the name that readAovs has, and those of its components.
 struct ChannelArray {
-  const char* word;
+  std::string word;
   std::vector<std::string> channels;
 };
 
@@ -254,6 +257,11 @@ const std::vector<ChannelArray>& channelArrays() {
   static const std::vector<ChannelArray> arrays{
       {"position", {"P.X", "P.Y", "P.Z"}}, {"normal", {"N.X", "N.Y", "N.Z"}}, {"transmittance", {"transmittance.Y"}}};
   return arrays;
+}
+
+/// A layer of a light or a channel.
+ChannelArray layerArray(const std::string& name) {
+  return {name, {name + ".R", name + ".G", name + ".B"}};
 }
 
 /// The values of `array`, which must have the image's height and width, and `components` a pixel if that is not 1.
@@ -272,11 +280,14 @@ py::dict channelsOf(Image& image) {
   py::dict arrays;
   const std::vector<py::ssize_t> scalar{image.size.y, image.size.x};
   if (!image.depth.empty()) arrays["depth"] = depthOf(image);
-  for (const ChannelArray& one : channelArrays()) {
+  std::vector<ChannelArray> known = channelArrays();
+  for (const auto& [name, values] : image.channels)  // layers of lights and channels
+    if (name.ends_with(".R")) known.push_back(layerArray(name.substr(0, name.size() - 2)));
+  for (const ChannelArray& one : known) {
     const std::size_t components = one.channels.size();
     if (!image.channels.contains(one.channels.front())) continue;
     if (components == 1) {
-      arrays[one.word] = adopt(image.channels.at(one.channels.front()), scalar);
+      arrays[py::str(one.word)] = adopt(image.channels.at(one.channels.front()), scalar);
       continue;
     }
     std::vector<float> values(components * image.channels.at(one.channels.front()).size());
@@ -285,7 +296,7 @@ py::dict channelsOf(Image& image) {
       FV_CHECK_EQ(components * channel.size(), values.size());
       for (std::size_t i = 0; i < channel.size(); ++i) values[components * i + c] = channel[i];
     }
-    arrays[one.word] = adopt(values, {image.size.y, image.size.x, py::ssize_t(components)});
+    arrays[py::str(one.word)] = adopt(values, {image.size.y, image.size.x, py::ssize_t(components)});
   }
   return arrays;
 }
@@ -299,12 +310,17 @@ void addChannels(Image& image, const py::dict& channels) {
       image.depth = pixelValues(array, image.size, 1, what);
       continue;
     }
-    const auto named = std::ranges::find(channelArrays(), word, &ChannelArray::word);
-    if (named == channelArrays().end())
-      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, not '{}'", Parameter("aov"), word);
-    const std::size_t components = named->channels.size();
+    const auto found = std::ranges::find(channelArrays(), word, &ChannelArray::word);
+    // Layers have any name, but none that is a letter from another channel's.
+    const auto isNear = [&](const ChannelArray& known) { return editDistance(word, known.word) == 1; };
+    const bool isSlip = word.empty() || editDistance(word, "depth") == 1 || std::ranges::any_of(channelArrays(), isNear);
+    if (found == channelArrays().end() && isSlip)
+      fail(ErrorKind::Usage, "{} takes depth, position, normal, transmittance and layers of lights and channels, not '{}'",
+           Parameter("aov"), word);
+    const ChannelArray named = found != channelArrays().end() ? *found : layerArray(word);
+    const std::size_t components = named.channels.size();
     const std::vector<float> values = pixelValues(array, image.size, components, what);
-    for (std::size_t i = 0; i < values.size(); ++i) image.channels[named->channels[i % components]].push_back(values[i]);
+    for (std::size_t i = 0; i < values.size(); ++i) image.channels[named.channels[i % components]].push_back(values[i]);
   }
 }
 

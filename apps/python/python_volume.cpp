@@ -18,6 +18,7 @@
 #include "engine/core/error.h"
 #include "engine/core/nearest_name.h"
 #include "engine/core/printable.h"
+#include "engine/description/added_volume.h"
 #include "engine/volume/volume_of_scalars.h"
 
 namespace freevoxels {
@@ -28,16 +29,16 @@ namespace py = pybind11;
 using Json = nlohmann::json;
 
 constexpr std::array kPlacementKeywords{"spacing", "origin", "transform", "no_data", "temperature"};
-/// What arrays have in common with files: their part that is drawn, also in the section "input".
-constexpr std::array kClipKeywords{"clip_box", "clip_plane"};
+/// What arrays have in common with files: their part that is drawn, also in the section "input", labels and channels.
+constexpr std::array kReadingKeywords{"clip_box", "clip_plane", "labels", "channel", "channels"};
 
-bool isClip(const std::string& keyword) {
-  return std::ranges::find(kClipKeywords, keyword) != kClipKeywords.end();
+bool isOfReading(const std::string& keyword) {
+  return std::ranges::find(kReadingKeywords, keyword) != kReadingKeywords.end();
 }
 
-/// The part that is drawn, or a section that has it.
-bool hasClip(const std::string& keyword) {
-  return keyword == "input" || isClip(keyword);
+/// One of these, or the section that has some.
+bool saysHowToRead(const std::string& keyword) {
+  return keyword == "input" || isOfReading(keyword);
 }
 
 /// The `count` numbers of a keyword, or a single one where `orSingle`. Nothing if it is not given.
@@ -78,19 +79,19 @@ glm::dmat4 placementOf(const py::kwargs& keywords) {
   return matrix;
 }
 
-/// The clip box and plane among keywords, and in a section "input" of them, whose file an array replaces.
-InputDescription clipOf(const py::kwargs& keywords) {
-  Json clip = Json::object();
+/// How an array is read, from keywords and a section "input" of them, whose file the array replaces.
+SceneDescription readingOf(const py::kwargs& keywords) {
+  Json reading = Json::object();
   const Json given = jsonOf(keywords);
   for (const auto& [key, value] : given.items()) {
     const auto keep = [](Json& kept, const std::string& option, const Json& one) {
-      if (const std::string name = keywordOf(option); isClip(name)) kept[name] = one;
+      if (const std::string name = keywordOf(option); isOfReading(name)) kept[name] = one;
     };
-    keep(clip, key, value);
+    keep(reading, key, value);
     if (key == "input" && value.is_object())
-      for (const auto& [inner, one] : value.items()) keep(clip["input"], inner, one);
+      for (const auto& [inner, one] : value.items()) keep(reading["input"], inner, one);
   }
-  return KeywordOptions({clip}, {"input"}).scene.input;
+  return KeywordOptions({reading}, {"input", "classification"}).scene;
 }
 
 }  // namespace
@@ -100,7 +101,7 @@ bool isPlacement(const std::string& keyword) {
 }
 
 bool isOfArrays(const std::string& keyword) {
-  return isPlacement(keyword) || hasClip(keyword);
+  return isPlacement(keyword) || saysHowToRead(keyword);
 }
 
 void refusePlacement(const py::kwargs& keywords, const char* what) {
@@ -116,19 +117,26 @@ void refuseArrayOptions(const py::kwargs& keywords) {
   refusePlacement(placement, "a file");
 }
 
+std::string nameOf(const PythonVolume& volume) {
+  const std::shared_ptr<const VolumeSource> source = volume.volume->source({.isRead = true}, {});
+  return nameInMemory(source->whole());
+}
+
 PythonVolume volumeFromArray(const py::args& arguments, const py::kwargs& named) {
   const auto [array, keywords] = oneOf(arguments, named, "array", "Volume()");
   std::vector<std::string> known(kPlacementKeywords.begin(), kPlacementKeywords.end());
-  known.insert(known.end(), kClipKeywords.begin(), kClipKeywords.end());
-  py::kwargs ofClip;
+  known.insert(known.end(), kReadingKeywords.begin(), kReadingKeywords.end());
+  py::kwargs ofReading;
   for (const auto& [key, value] : keywords)
-    if (const std::string name = keywordText(key); hasClip(name))
-      ofClip[key] = value;
+    if (const std::string name = keywordText(key); saysHowToRead(name))
+      ofReading[key] = value;
     else if (!isPlacement(name))
       fail(ErrorKind::Usage, "a volume of an array has no option {}{}", Parameter(quotedPart(name)),
            suggestion(name, known).empty() ? fmt::format(": it has {}", fmt::join(known, ", ")) : suggestion(name, known));
   const auto of = [&](const char* name) { return keywords.contains(name) ? py::object(keywords[name]) : py::object(py::none()); };
-  Volume volume = clipOf(ofClip).clip(volumeOfArray(array, of("temperature"), {placementOf(keywords), of("no_data")}));
+  const SceneDescription reading = readingOf(ofReading);
+  Volume volume = reading.input.clip(volumeOfArray(
+      array, of("temperature"), {placementOf(keywords), of("no_data"), reading.classification.labels, reading.classification.channels}));
   warnInPython(volume);
   return {std::make_shared<const SharedVolume>(std::move(volume)), true};
 }
@@ -151,7 +159,7 @@ void addVolume(py::module_& module) {
   using namespace py::literals;
   const std::string parameters =
       "array, *, spacing=1.0, origin=(0.0, 0.0, 0.0), transform=None, no_data=None, temperature=None, clip_box=None, clip_plane=None, "
-      "input=None";
+      "labels=None, channel=None, input=None";
   const std::string text = fmt::format("Volume({})\n--\n\nA volume in memory, which renderers can share.", parameters);
   const std::string textOfArrays = fmt::format(
       "__init__(self, {})\n--\n\n"
@@ -159,7 +167,9 @@ void addVolume(py::module_& module) {
       "(x, y, z). origin: where the centre of voxel [0, 0, 0] is. transform: instead of both, a 4x4 affine matrix from\n"
       "(x, y, z, 1) in voxels to the world. NaN, and values equal to no_data in the array's own type, hold no data.\n"
       "temperature: an array of the same shape, for emission. clip_box, clip_plane: the part that is drawn, as for files, alone or\n"
-      "in the section input of a scene, whose file the array replaces.",
+      "in the section input of a scene, whose file the array replaces. labels: the values are labels, all or those of a text such as\n"
+      "'1,2=red,7@0.3', which are drawn as solids of their colours. channel: a list such as ['0:green', '1:magenta:10,300:emission'] of\n"
+      "the channels of an array with axes (channel, z, y, x).",
       parameters);
   py::class_<PythonVolume>(module, "Volume", text.c_str())
       .def(py::init(&volumeFromArray), textOfArrays.c_str())

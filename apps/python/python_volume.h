@@ -17,6 +17,9 @@ struct PythonVolume {
   const Volume& describe() const { return volume->describe(); }
 };
 
+/// The name by which a scene refers to the volume besides its own one (nameInMemory). A baked one is read as a whole.
+std::string nameOf(const PythonVolume& volume);
+
 /// Volume(array, ...). Fails with ErrorKind::Input for arrays and values that cannot be used, with ErrorKind::Usage for other keywords.
 PythonVolume volumeFromArray(const pybind11::args& arguments, const pybind11::kwargs& named);
 /// Volume.open(file, ...). Without a file, which is None then, it is that of the scene among the keywords. Fails as openVolume does.

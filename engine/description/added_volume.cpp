@@ -99,6 +99,39 @@ std::string transformNumbers(const Json& value) {
   return value.is_array() ? joinedTexts(value, row) : plain(value);
 }
 
+constexpr const char* kMemoryPrefix = "memory:";
+
+/// The volumes in memory that have names, by these.
+class NamedVolumes {
+ public:
+  std::string add(const std::shared_ptr<const Volume>& volume) {
+    const std::lock_guard lock(mutex_);
+    std::erase_if(volumes_, [](const auto& one) { return one.second.expired(); });
+    for (const auto& [name, known] : volumes_)
+      if (known.lock() == volume) return name;
+    const std::string name = fmt::format("{}{}", kMemoryPrefix, next_++);
+    volumes_[name] = volume;
+    return name;
+  }
+  std::shared_ptr<const Volume> at(const std::string& name) {
+    const std::lock_guard lock(mutex_);
+    const auto found = volumes_.find(name);
+    std::shared_ptr<const Volume> volume = found == volumes_.end() ? nullptr : found->second.lock();
+    if (!volume) fail(ErrorKind::Usage, "there is no volume {} in memory any more: give the volume itself, or a file", name);
+    return volume;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::map<std::string, std::weak_ptr<const Volume>> volumes_;
+  std::uint64_t next_ = 1;
+};
+
+NamedVolumes& namedVolumes() {
+  static NamedVolumes volumes;
+  return volumes;
+}
+
 std::shared_ptr<const VolumeSource> readSource(const AddedVolume& added, const Progress& progress) {
   static std::mutex mutex;
   static std::map<std::string, std::weak_ptr<const VolumeSource>> known;
@@ -106,7 +139,10 @@ std::shared_ptr<const VolumeSource> readSource(const AddedVolume& added, const P
   const std::string text = addedVolumeText(file);
   const std::lock_guard lock(mutex);
   if (std::shared_ptr<const VolumeSource> there = known[text].lock()) return there;
-  Volume volume = sceneOf(added).readVolume(kMaxNumberedVoxels, 0, progress);
+  if (isInMemory(added.input.volume) && !added.transform)
+    return std::make_shared<const VolumeInMemory>(namedVolumes().at(added.input.volume));
+  Volume volume =
+      isInMemory(added.input.volume) ? *namedVolumes().at(added.input.volume) : sceneOf(added).readVolume(kMaxNumberedVoxels, 0, progress);
   if (added.transform) volume.indexToWorld = *added.transform * volume.indexToWorld;
   auto source = std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(std::move(volume)));
   known[text] = source;
@@ -114,6 +150,21 @@ std::shared_ptr<const VolumeSource> readSource(const AddedVolume& added, const P
 }
 
 }  // namespace
+
+std::string nameInMemory(const std::shared_ptr<const Volume>& volume) {
+  return namedVolumes().add(volume);
+}
+
+bool isInMemory(const std::string& text) {
+  return text.starts_with(kMemoryPrefix);
+}
+
+std::vector<std::shared_ptr<const Volume>> volumesInMemory(const SceneDescription& scene) {
+  std::vector<std::shared_ptr<const Volume>> volumes;
+  for (const AddedVolume& added : scene.added)
+    if (isInMemory(added.input.volume)) volumes.push_back(namedVolumes().at(added.input.volume));
+  return volumes;
+}
 
 AddedVolume readAddedVolume(const std::string& text) {
   SceneDescription scene;

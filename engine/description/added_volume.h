@@ -22,4 +22,12 @@ nlohmann::json withFiles(nlohmann::json added, const std::function<std::string(c
 /// Reads the volumes and classifies them. A volume that somebody still holds is not read again. Fails as SceneDescription::readVolume().
 std::vector<SceneVolume> openAddedVolumes(const SceneDescription& scene, const Progress& progress = {});
 
+/// A name for a volume in memory, which InputDescription::volume of an AddedVolume may be as long as somebody holds the volume. Any thread
+/// may call this.
+std::string nameInMemory(const std::shared_ptr<const Volume>& volume);
+/// Whether a text is such a name.
+bool isInMemory(const std::string& text);
+/// The volumes of a scene that have such names. Fails with ErrorKind::Usage where nobody has held one.
+std::vector<std::shared_ptr<const Volume>> volumesInMemory(const SceneDescription& scene);
+
 }  // namespace freevoxels

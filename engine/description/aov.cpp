@@ -18,10 +18,12 @@ struct AovName {
   const char* word;
   bool Aovs::*member;
 };
-constexpr std::array<AovName, 4> kAovs{{{"depth", &Aovs::depth},
+constexpr std::array<AovName, 6> kAovs{{{"depth", &Aovs::depth},
                                         {"position", &Aovs::position},
                                         {"normal", &Aovs::normal},
-                                        {"transmittance", &Aovs::transmittance}}};
+                                        {"transmittance", &Aovs::transmittance},
+                                        {"lights", &Aovs::lights},
+                                        {"channels", &Aovs::channels}}};
 
 /// The points that are seen, in the world.
 class SeenPoints {
@@ -89,7 +91,8 @@ Aovs readAovs(const std::string& name, const std::string& text) {
     const std::string word = text.substr(begin, end - begin);
     const auto named = std::ranges::find_if(kAovs, [&](const AovName& aov) { return aov.word == word; });
     if (named == kAovs.end())
-      fail(ErrorKind::Usage, "{} takes depth, position, normal and transmittance, with commas between them, not '{}'", name, quotedPart(word));
+      fail(ErrorKind::Usage, "{} takes depth, position, normal, transmittance, lights and channels, with commas between them, not '{}'",
+           name, quotedPart(word));
     aovs.*named->member = true;
     begin = end + 1;
   }

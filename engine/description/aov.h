@@ -13,8 +13,11 @@ struct Aovs {
   bool position = false;       ///< P.X, P.Y, P.Z: the point in the world at that depth; 0 where nothing is seen
   bool normal = false;         ///< N.X, N.Y, N.Z: unit normal, towards the eye, of the surface of these points; 0 like P
   bool transmittance = false;  ///< transmittance.Y: 1 - alpha, not below 0
+  bool lights = false;         ///< light1.R, ..., a layer for each source of light (light_layers.h), of which the colours are the sum
+  bool channels = false;       ///< a layer for each channel of the volume (channels.h), of which the colours are the sum
 
-  bool any() const { return depth || position || normal || transmittance; }
+  bool any() const { return depth || position || normal || transmittance || lights || channels; }
+  bool hasLayers() const { return lights || channels; }
   bool needDepth() const { return depth || position || normal; }
 
   bool operator==(const Aovs&) const = default;

@@ -30,6 +30,9 @@ Classification bakedClassification(const ClassificationDescription& given, const
 
 Classification ClassificationDescription::resolve(const Volume& volume, bool shines) const {
   Classification classification;
+  if (((labels && !labels->isNone()) || !channels.empty()) && !(volume.albedo && volume.albedo->isMade))
+    fail(ErrorKind::Usage, "{} says how the values of a volume are read, and {} has been read without: give it where that is opened",
+         Parameter(channels.empty() ? "labels" : "channel"), volume.source);
   if (volume.classification) classification = bakedClassification(*this, volume);
   if (transferFunction) {
     classification.transferFunction = isInlineJson(*transferFunction)
@@ -46,8 +49,8 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
   }
   if (densityScale)
     classification.densityScale = *densityScale;
-  else if (volume.isLevelSet)
-    classification.densityScale = kLevelSetOpticalDepth / volume.voxelSize();
+  else if (volume.isSolid)
+    classification.densityScale = kSolidOpticalDepth / volume.voxelSize();
   else
     classification.densityScale = automaticDensityScale(volume, shines ? kShiningOpticalDepth : kAutomaticOpticalDepth);
   if (albedo) classification.albedo = glm::vec3(*albedo);
@@ -56,7 +59,25 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
 
 std::optional<GridRequest> ClassificationDescription::grid() const {
   if (albedoGrid) return *albedoGrid == kNone ? std::nullopt : std::optional(GridRequest{.name = *albedoGrid, .isRequired = true});
-  return albedo || transferFunction ? std::nullopt : std::optional(GridRequest());
+  return albedo || transferFunction || !channels.empty() ? std::nullopt : std::optional(GridRequest());
+}
+
+void ClassificationDescription::check(const InputDescription& input) const {
+  const bool isProcedural = proceduralName(input.volume).has_value();
+  for (const auto& [name, isGiven] : {std::pair("labels", labels.has_value()), {"channel", !channels.empty()}})
+    if (isGiven && !isProcedural && fvx::isFvx(input.volume))
+      fail(ErrorKind::Usage, "{} says how values are read, and '{}' is a baked volume: give it to 'freevoxels bake'", Parameter(name),
+           input.volume);
+  if (channels.empty()) return;
+  doEmit(channels);
+  if (isProcedural) fail(ErrorKind::Usage, "{} names grids of a file, and {} has one", Parameter("channel"), input.volume);
+  if (input.grid) fail(ErrorKind::Usage, "{} and {} exclude each other: channels are grids", Parameter("channel"), Parameter("grid"));
+}
+
+LabelRequest ClassificationDescription::labelRequest() const {
+  if (labels) return {.labels = *labels, .ofAllGrids = true};
+  if (densityScale || albedo || transferFunction || albedoGrid) return {};
+  return {.labels = Labels()};
 }
 
 void ClassificationDescription::take(const Classification& resolved) {

@@ -26,9 +26,10 @@ bool EmissionDescription::mayShine(const TemperatureGrid& grid) const {
 
 Emission EmissionDescription::scales(const TemperatureGrid& grid) const {
   Emission result;
+  result.strength = strength.value_or(1.0);
+  if (grid.isRadiance) return result;
   result.temperatureOffset = temperatureOffset.value_or(temperatureScale ? 0.0 : automaticTemperatureOffset(grid));
   result.temperatureScale = temperatureScale.value_or(automaticTemperatureScale(grid, result.temperatureOffset));
-  result.strength = strength.value_or(1.0);
   return result;
 }
 

@@ -95,20 +95,23 @@ std::shared_ptr<const fvx::FvxFile> InputDescription::baked() const {
   return std::make_shared<const fvx::FvxFile>(volume);
 }
 
-Volume InputDescription::open(std::uint64_t maximumVoxels, const MoreGrids& more, int level, const Progress& progress) const {
+Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& what, int level, const Progress& progress) const {
   const std::optional<std::string> name = proceduralName(volume);
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
-  if (!name)
-    return clip(readVdb(volume, {.grid = grid.value_or(""),
-                                 .maximumVoxels = maximumVoxels,
-                                 .more = more,
-                                 .clipBox = clipBox,
-                                 .noData = noData,
-                                 .progress = progress}));
+  if (!name) {
+    ReadRequest request = what;
+    request.grid = grid.value_or("");
+    request.maximumVoxels = maximumVoxels;
+    request.clipBox = clipBox;
+    request.noData = noData;
+    request.progress = progress;
+    return clip(readVdb(volume, request));
+  }
   Volume made = openProcedural(*name, resolution, maximumVoxels, progress);
-  if (!more.temperature) made.temperature.reset();
+  if (!what.more.temperature) made.temperature.reset();
   if (noData) summariseValues(made, noData->scalar());
   settleNoData(made, noData);
+  if (what.labels.of(false)) showLabels(made, *what.labels.of(false));
   if (made.activeVoxels == 0 && !made.temperature)
     fail(ErrorKind::Usage, "all voxels of {} have the value of {}: leave it out", volume, Parameter("no-data"));
   return clip(std::move(made));

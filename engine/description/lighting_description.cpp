@@ -46,7 +46,7 @@ void LightingDescription::check() const {
 
 double LightingDescription::surfaceOf(const Volume& volume, const Classification& classification) const {
   const Shading wanted = shading.value_or(Shading::Auto);
-  const bool surfaces = wanted == Shading::Gradient || (wanted == Shading::Auto && (classification.transferFunction || volume.isLevelSet));
+  const bool surfaces = wanted == Shading::Gradient || (wanted == Shading::Auto && (classification.transferFunction || volume.isSolid));
   return surfaces ? surface.value_or(1.0) : 0.0;
 }
 

@@ -28,10 +28,14 @@ ClassificationDescription resolvedClassification(const ClassificationDescription
     return {.transferFunction = given.transferFunction.value_or(transferFunctionJson(*classification.transferFunction)),
             .order = classification.order};
   const glm::vec3 albedo = classification.albedo;
-  return {
-      .densityScale = classification.densityScale,
-      .albedo = glm::dvec3(shortest(albedo.r), shortest(albedo.g), shortest(albedo.b)),
-      .albedoGrid = scene.volume->albedo && !scene.volume->classification ? std::optional(scene.volume->albedo->name) : given.albedoGrid};
+  const bool isMade = scene.volume->albedo && scene.volume->albedo->isMade;
+  const bool hasLabels = isMade && given.channels.empty();
+  const bool hasGrid = scene.volume->albedo && !isMade && !scene.volume->classification;
+  return {.densityScale = classification.densityScale,
+          .albedo = glm::dvec3(shortest(albedo.r), shortest(albedo.g), shortest(albedo.b)),
+          .albedoGrid = hasGrid ? std::optional(scene.volume->albedo->name) : given.albedoGrid,
+          .labels = hasLabels ? std::optional(given.labels.value_or(Labels())) : given.labels,
+          .channels = given.channels};
 }
 
 EmissionDescription resolvedEmission(const EmissionDescription& given, const Scene& scene) {
@@ -42,7 +46,8 @@ EmissionDescription resolvedEmission(const EmissionDescription& given, const Sce
   description.emission = true;
   description.take(*scene.classification.emission);
   // A procedural volume's temperatures have no name.
-  if (!scene.volume->temperature->name.empty() && !scene.volume->classification)
+  const TemperatureGrid& grid = *scene.volume->temperature;
+  if (!grid.name.empty() && !grid.isRadiance && !scene.volume->classification)
     description.temperatureGrid = scene.volume->temperature->name;
   return description;
 }
@@ -103,18 +108,23 @@ void SceneDescription::check() const {
          Parameter("add"));
   for (const AddedVolume& one : added) {
     one.input.check();
+    one.classification.check(one.input);
     one.emission.check(one.input);
   }
   if (classification.albedoGrid && classification.albedoGrid != kNone && proceduralName(input.volume))
     fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("albedo-grid"), input.volume);
+  classification.check(input);
   emission.check(input);
   camera.check();
   lighting.check();
 }
 
 Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
-  return input.open(maximumVoxels, {.temperature = emission.grid(), .albedo = classification.grid(), .mayBeMissing = isFrame}, level,
-                    progress);
+  return input.open(maximumVoxels,
+                    {.more = {.temperature = emission.grid(), .albedo = classification.grid(), .mayBeMissing = isFrame},
+                     .labels = classification.labelRequest(),
+                     .channels = classification.channels},
+                    level, progress);
 }
 
 std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount, bool mayStayFile, bool isFrame,

@@ -24,6 +24,7 @@
 #include "engine/storage/fvx_file.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/coarse_volume.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/scan.h"
 #include "engine/volume/scene_volume.h"
 #include "engine/volume/vdb.h"
@@ -61,8 +62,8 @@ struct InputDescription {
   Volume clip(Volume whole) const;
   /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
   /// temperatures and albedos. If the box of a baked volume is too large at `level` of its octree, the finest level that fits is
-  /// opened, with a warning. `progress` may abandon it.
-  Volume open(std::uint64_t maximumVoxels, const MoreGrids& more = {}, int level = 0, const Progress& progress = {}) const;
+  /// opened, with a warning. `what`: more grids, labels and channels; the rest of it is that of the input. `progress` may abandon it.
+  Volume open(std::uint64_t maximumVoxels, const ReadRequest& what = {}, int level = 0, const Progress& progress = {}) const;
   /// Null where the volume is not a baked one.
   std::shared_ptr<const fvx::FvxFile> baked() const;
 
@@ -100,6 +101,11 @@ struct ClassificationDescription {
   /// one and neither albedo nor transfer function are given.
   std::optional<std::string> albedoGrid;
   std::optional<ClassificationOrder> order;     ///< of a transfer function; else Post
+  /// How labels are drawn, which the values then are. Else whole numbers, booleans and masks of an OpenVDB file are labels, all of which
+  /// are drawn, unless another field of the classification is given.
+  std::optional<Labels> labels;
+  /// Grids that are drawn together in place of one, each with its colour; none: a single grid.
+  std::vector<ChannelStyle> channels;
 
   /// Reads the transfer function. What is not given is as the volume's file says, if it does (Volume::classification); fields are
   /// refused where that is fixed. Otherwise, without any field, scans have scanTransferFunction, level sets are opaque, and others
@@ -110,6 +116,9 @@ struct ClassificationDescription {
 
   /// The grid of albedos to read, if any.
   std::optional<GridRequest> grid() const;
+  LabelRequest labelRequest() const;
+  /// Fails for channels of a volume that has none.
+  void check(const InputDescription& input) const;
 
   bool operator==(const ClassificationDescription&) const = default;
 };

@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "engine/description/added_volume.h"
+#include "engine/description/label_words.h"
 #include "engine/description/text_values.h"
 
 namespace freevoxels {
@@ -199,6 +200,22 @@ void addClassification(std::vector<SceneField>& fields) {
   section.add("transfer-function", &Classified::transferFunction, text(Kind::File, "FILE.json")).excludes = {"density-scale", "albedo",
                                                                                                              "albedo-grid"};
   section.add("classification", &Classified::order, words(kOrderWords));
+  SceneField& labels =
+      section.add("labels", &Classified::labels, Codec<Labels>{.form = kLabelsForm, .read = readLabels, .text = labelsText});
+  labels.excludes = {"transfer-function", "albedo-grid"};
+  SceneField& channels = section.add(
+      "channel", Kind::Value, kChannelForm,
+      [](Classified& classified, const Texts& given) {
+        classified.channels.clear();
+        for (const std::string& one : given) classified.channels.push_back(readChannel(marked("channel"), one));
+      },
+      [](const Classified& classified) {
+        Texts texts;
+        for (const ChannelStyle& channel : classified.channels) texts.push_back(channelText(channel));
+        return texts;
+      });
+  channels.repeated = true;
+  channels.excludes = {"transfer-function", "albedo", "albedo-grid", "labels", "temperature-grid"};
 }
 
 void addEmission(std::vector<SceneField>& fields) {

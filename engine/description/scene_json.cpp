@@ -37,7 +37,7 @@ char separatorOf(const SceneField& field) {
 
 /// Whether the text is not a file name: a procedural volume, or JSON.
 bool isNoPath(const std::string& text) {
-  return proceduralName(text) || isInlineJson(text);
+  return proceduralName(text) || isInlineJson(text) || isInMemory(text);
 }
 
 std::string numbersText(const SceneField& field, const Json& list) {

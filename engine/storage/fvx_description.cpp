@@ -207,6 +207,7 @@ void readCounts(const Json& json, Volume& volume) {
 
 TemperatureGrid readTemperature(const Json& json, std::uint64_t voxels) {
   TemperatureGrid grid{.name = text(json.at("name")), .values = {}};
+  grid.isRadiance = json.value("radiance", false);
   grid.activeVoxels = count(json.at("active_voxels"), voxels, "active_voxels of temperatures");
   grid.nanVoxels = count(json.at("nan_voxels"), voxels, "nan_voxels of temperatures");
   grid.minimum = real(json.at("minimum"), "minimum of temperatures");
@@ -223,13 +224,15 @@ Volume readVolume(const Json& json) {
   volume.up = vectorOf<3>(json.at("up"), [](const Json& component) { return number(component, -kLargestFloat, kLargestFloat, "up"); }, "up");
   if (!(glm::length(volume.up) > std::numeric_limits<float>::min())) refuse("up");
   volume.upReason = text(json.at("up_reason"));
-  volume.isLevelSet = json.at("level_set").get<bool>();
+  volume.isSolid = json.at("level_set").get<bool>();
   readCounts(json, volume);
   const Json& classification = json.at("classification");
   volume.classification = std::make_shared<const Classification>(readClassification(classification));
   volume.classificationIsFixed = classification.at("fixed").get<bool>();
   if (json.contains("temperature")) volume.temperature = readTemperature(json["temperature"], volume.voxelCount());
   if (volume.classification->emission && !volume.temperature) throw std::runtime_error("there is emission without temperatures");
+  if (volume.temperature && volume.temperature->isRadiance && !json.contains("albedo"))
+    throw std::runtime_error("there is light without a colour");
   if (json.contains("albedo")) {
     const Json& albedo = json["albedo"];
     constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();  // it counts voxels beyond the volume's box too
@@ -249,7 +252,7 @@ std::string toJson(const Description& description) {
   for (int i = 0; i < 16; ++i) json["index_to_world"].push_back(volume.indexToWorld[i / 4][i % 4]);
   json["up"] = triple(volume.up);
   json["up_reason"] = volume.upReason;
-  json["level_set"] = volume.isLevelSet;
+  json["level_set"] = volume.isSolid;
   json["active_voxels"] = volume.activeVoxels;
   json["nan_voxels"] = volume.nanVoxels;
   json["negative_voxels"] = volume.negativeVoxels;
@@ -259,6 +262,7 @@ std::string toJson(const Description& description) {
   json["classification"] = classificationJson(volume);
   if (volume.temperature)
     json["temperature"] = {{"name", volume.temperature->name},
+                           {"radiance", volume.temperature->isRadiance},
                            {"active_voxels", volume.temperature->activeVoxels},
                            {"nan_voxels", volume.temperature->nanVoxels},
                            {"minimum", volume.temperature->minimum},

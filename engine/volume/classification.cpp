@@ -76,8 +76,10 @@ LightSums totalLight(const Volume& volume, const Classification& classification,
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
           const ScalarBricks::Brick* scalars = volume.scalars.brickAt(temperatures.cell(i));
           for (std::size_t voxel = 0; voxel < temperatures.bricks()[i].size(); ++voxel) {
-            const glm::dvec3 sent = emittedLight(emission, temperatures.bricks()[i][voxel]);
-            const double light = glm::dot(sent, kLuminance);
+            const glm::ivec3 place = temperatures.firstVoxel(i) + ScalarBricks::placeInBrick(voxel);
+            const glm::dvec3 sent = emittedLight(emission, volume, place, temperatures.bricks()[i][voxel]);
+            // A channel of light is as bright in blue as in green.
+            const double light = volume.temperature->isRadiance ? std::max({sent.r, sent.g, sent.b}) : glm::dot(sent, kLuminance);
             if (light == 0.0) continue;
             const double sigma = scalars ? classify(classification, (*scalars)[voxel]).extinction : 0.0;
             sum = sum + LightSums{light, light * light, light * sigma};
@@ -110,10 +112,21 @@ glm::dvec3 emittedLight(const Emission& emission, float temperature) {
   return glm::min(emission.strength * blackbodyColor(kelvin), glm::dvec3(kMaximumExtinction));
 }
 
+glm::dvec3 emittedLight(const Emission& emission, const Volume& volume, glm::ivec3 voxel, float value) {
+  if (!volume.temperature->isRadiance) return emittedLight(emission, value);
+  if (value == kInactiveVoxel) return glm::dvec3(0.0);
+  return glm::min(emission.strength * double(value) * glm::dvec3(albedoOf({}, *volume.albedo, voxel)), glm::dvec3(kMaximumExtinction));
+}
+
+double brightestLight(const Emission& emission, const TemperatureGrid& grid, float value) {
+  if (grid.isRadiance) return value > 0.0f ? emission.strength * double(value) : 0.0;
+  const glm::dvec3 light = emittedLight(emission, value);
+  return std::max({light.r, light.g, light.b});
+}
+
 double brightestLight(const Classification& classification, const Volume& volume) {
   if (!classification.emission || !volume.temperature || volume.temperature->activeVoxels == 0) return 0.0;
-  const glm::dvec3 light = emittedLight(*classification.emission, volume.temperature->maximum);
-  return std::max({light.r, light.g, light.b});
+  return brightestLight(*classification.emission, *volume.temperature, volume.temperature->maximum);
 }
 
 glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid, glm::ivec3 voxel) {
@@ -149,7 +162,8 @@ double automaticEmissionStrength(const Volume& volume, const Classification& cla
   const double edge = std::cbrt(voxels) * volume.voxelSize();
   const double depth = all.dimmed / all.light * edge;
   const double leaving = depth > 1e-6 ? -std::expm1(-depth) / depth : 1.0;
-  return kAutomaticRadiance / (all.light / voxels * edge * leaving);
+  const double radiance = volume.temperature->isRadiance ? 1.0 : kAutomaticRadiance;
+  return radiance / (all.light / voxels * edge * leaving);
 }
 
 double automaticDensityScale(const Volume& volume, double opticalDepth) {

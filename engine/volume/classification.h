@@ -67,9 +67,13 @@ struct ClassifiedVoxel {
 /// extinction 0. A negative scalar is a density of 0, or data for a transfer function.
 ClassifiedVoxel classify(const Classification& classification, float scalar);
 
-/// The emitted light per world unit, linear Rec.709, at most kMaximumExtinction; 0 for kInactiveVoxel and
+/// The emitted light per world unit of a black body, linear Rec.709, at most kMaximumExtinction; 0 for kInactiveVoxel and
 /// below kColdestLight.
 glm::dvec3 emittedLight(const Emission& emission, float temperature);
+/// The same of a voxel of a volume with temperatures, or with TemperatureGrid::isRadiance: strength x value x albedo.
+glm::dvec3 emittedLight(const Emission& emission, const Volume& volume, glm::ivec3 voxel, float value);
+/// The largest component of the light that a voxel of this value of the grid emits at most.
+double brightestLight(const Emission& emission, const TemperatureGrid& grid, float value);
 
 /// The largest component of the light that any voxel emits, or 0.
 double brightestLight(const Classification& classification, const Volume& volume);
@@ -90,8 +94,8 @@ std::string transferFunctionJson(const TransferFunction& function);
 /// so that flames remain visible.
 inline constexpr double kAutomaticOpticalDepth = 6.0, kShiningOpticalDepth = 2.0;
 double automaticDensityScale(const Volume& volume, double opticalDepth);
-/// The optical depth of a voxel inside a level set.
-inline constexpr double kLevelSetOpticalDepth = 3.0;
+/// The optical depth of a voxel of a solid (Volume::isSolid) with density 1.
+inline constexpr double kSolidOpticalDepth = 3.0;
 
 /// The default albedo of volumes with emission.
 inline constexpr float kSmokeAlbedo = 0.5f;
@@ -106,9 +110,9 @@ double automaticTemperatureOffset(const TemperatureGrid& grid);
 double automaticTemperatureScale(const TemperatureGrid& grid, double offset);
 
 /// The default emission strength (that of `emission` is ignored): a cube that emits all the light of the
-/// volume has luminance kAutomaticRadiance. The cube is as large as that number of voxels of one temperature
-/// which has the same sum of light and the same sum of squares, and it is dimmed by the mean extinction where
-/// the light is.
+/// volume has luminance kAutomaticRadiance, or where the volume has light of its own (TemperatureGrid::isRadiance) radiance 1. The cube is
+/// as large as that number of voxels of one temperature which has the same sum of light and the same sum of squares, and it is dimmed by
+/// the mean extinction where the light is.
 inline constexpr double kAutomaticRadiance = 2.0;
 double automaticEmissionStrength(const Volume& volume, const Classification& classification,
                                  const Emission& emission);

@@ -73,7 +73,7 @@ Cells metCells(const Volume& volume, const Classification& classification, int e
     markCells(cells, volume.scalars, edge, 0, 0, [&](float, float high) { return high > density; });
   }
   if (classification.emission && volume.temperature) {
-    const auto shines = [&](float, float high) { return emittedLight(*classification.emission, high) != glm::dvec3(0.0); };
+    const auto shines = [&](float, float high) { return brightestLight(*classification.emission, *volume.temperature, high) > 0.0; };
     markCells(cells, volume.temperature->values, edge, 0, 0, shines);
   }
   return cells;

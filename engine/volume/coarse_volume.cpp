@@ -64,14 +64,14 @@ Volume coarseVolume(const Volume& volume, int factor, WithoutData withoutData) {
   coarse.indexToWorld = volume.indexToWorld * glm::scale(toMiddle, glm::dvec3(factor));
   coarse.scalars = coarseBricks(volume.scalars, coarse.dimensions, factor, withoutData);
   if (volume.temperature) {
-    coarse.temperature = TemperatureGrid{.name = volume.temperature->name};
+    coarse.temperature = TemperatureGrid{.name = volume.temperature->name, .isRadiance = volume.temperature->isRadiance};
     coarse.temperature->values =
         coarseBricks(volume.temperature->values, coarse.dimensions, factor, WithoutData::Ignored);
     summariseValues(*coarse.temperature);
     coverBricks(coarse, coarse.temperature->values);
   }
   if (volume.albedo) {
-    coarse.albedo = AlbedoGrid{.name = volume.albedo->name};
+    coarse.albedo = AlbedoGrid{.name = volume.albedo->name, .isMade = volume.albedo->isMade};
     for (std::size_t c = 0; c < coarse.albedo->values.size(); ++c)
       coarse.albedo->values[c] =
           coarseBricks(volume.albedo->values[c], coarse.dimensions, factor, WithoutData::Ignored);

@@ -106,6 +106,10 @@ class ScalarBricks {
     return bricks * sizeof(Brick) + cells.x * cells.y * cells.z * sizeof(std::int32_t);
   }
 
+  static glm::ivec3 placeInBrick(std::size_t index) {
+    const int i = int(index);
+    return {i % kEdge, i / kEdge % kEdge, i / (kEdge * kEdge)};
+  }
   static std::size_t indexInBrick(glm::ivec3 place) {
     return std::size_t(place.x + kEdge * (place.y + kEdge * place.z));
   }

@@ -179,7 +179,7 @@ double highestUsual(const Histogram& histogram) {
 }  // namespace
 
 bool looksLikeScan(const Volume& volume) {
-  if (volume.isLevelSet || !(volume.minimum < volume.maximum)) return false;
+  if (volume.isSolid || !(volume.minimum < volume.maximum)) return false;
   if (double(volume.negativeVoxels) > 0.01 * double(volume.activeVoxels)) return true;
   return !volume.isFog && double(volume.activeVoxels + volume.missingVoxels) >= 0.95 * double(volume.voxelCount());
 }

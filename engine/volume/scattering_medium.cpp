@@ -115,7 +115,9 @@ void ScatteringMedium::add(const Volume& part, glm::ivec3 first, const Classific
         for (int x = first.x; x < end.x; ++x) {
           const float scalar = scalars[std::size_t(x - first.x)];
           Cell& cell = row[x / grid_.edge];
-          if (emits) cell.emission += share * emittedLight(*classification.emission, temperatures[std::size_t(x - first.x)]);
+          if (emits)
+            cell.emission +=
+                share * emittedLight(*classification.emission, part, glm::ivec3(x, y, z) - first, temperatures[std::size_t(x - first.x)]);
           const double extinction = table.extinctionAt(scalar);
           if (extinction == 0.0) continue;
           const glm::dvec3 albedo =
@@ -145,7 +147,7 @@ void ScatteringMedium::addPlaced(const PlacedMedium& placed) {
   const int points = std::clamp(int(std::ceil(cellEdge / volume.voxelSize())), 1, kMostPoints), ratio = grid_.edge / directGrid_.edge;
   const double directShare = 1.0 / (double(points) * points * points), share = directShare / (double(ratio) * ratio * ratio);
   const auto addPoint = [&](glm::ivec3 voxel, Cell& cell, double& direct) {
-    if (emits) cell.emission += share * emittedLight(*classification.emission, volume.temperature->values.at(voxel));
+    if (emits) cell.emission += share * emittedLight(*classification.emission, volume, voxel, volume.temperature->values.at(voxel));
     const double extinction = table.extinctionAt(volume.scalars.at(voxel));
     if (extinction == 0.0) return;
     const glm::dvec3 albedo =

@@ -10,7 +10,9 @@
 
 #include "engine/core/error.h"
 #include "engine/core/stages.h"
+#include "engine/volume/channels.h"
 #include "engine/volume/coarse_volume.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/scan.h"
 #include "engine/volume/volume.h"
@@ -19,7 +21,7 @@ namespace freevoxels {
 
 struct GridInfo {
   std::string name;       ///< unique within the file: "density", or "density[1]" if several grids have the name
-  std::string valueType;  ///< "float", "half", "vec3s", "point data", ...
+  std::string valueType;  ///< "float", "half", "int32", "bool", "mask", "vec3s", "point data", ...
   std::string gridClass;  ///< "fog volume", "level set", "staggered", "unknown"
   std::uint64_t activeVoxels = 0;                 ///< active tiles counted as voxels
   glm::i64vec3 dimensions{0};                     ///< of the active bounding box; 0 if the grid is empty
@@ -34,6 +36,7 @@ struct GridInfo {
   std::vector<std::uint64_t> storedBlocks;
   std::uint64_t hostBytes = 0;  ///< host memory of the volume that readVdb would return; 0 if the grid cannot be drawn
   std::string unusable;         ///< why the grid cannot be drawn, in one clause; empty if it can
+  bool areLabels = false;       ///< whether it is drawn as labels, if nothing says otherwise
   bool isTemperature = false;   ///< whether emission uses it if no grid of temperatures is named
   bool isAlbedo = false;        ///< whether it can be the grid of albedos
 };
@@ -85,20 +88,20 @@ struct ReadRequest {
   MoreGrids more = {};
   std::optional<VoxelBox> clipBox = std::nullopt;  ///< read only this part where the whole box has more than `maximumVoxels`
   std::optional<NoData> noData = std::nullopt;     ///< of which voxels hold no data; else the padding of a scan (scan.h) does
+  LabelRequest labels = {};
+  std::vector<ChannelStyle> channels = {};         ///< if there are any, these grids are drawn in place of `grid` and `more` (channels.h)
   Progress progress = {};                          ///< may abandon it
 };
 
-/// Reads one float or half grid as a box around its active voxels (active tiles count as voxels, but for those of a fog volume that are 0);
+/// Reads one grid of numbers as a box around its active voxels (active tiles count as voxels, but for those of a fog volume that are 0);
 /// with temperatures, around their active voxels too. A file of temperatures alone is a flame without density. Where no grid can be told
 /// to be the density it is an error that lists the choice. A level set becomes a density of 1 inside and 0 outside, linear over three
-/// voxels across the surface. Fails with ErrorKind::Input if a required grid of `more` does not exist, and for frustum transforms, other
-/// grid types, empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels`, before
-/// allocating it.
+/// voxels across the surface; labels become solids (labels.h). Fails with ErrorKind::Input if a required grid of `more` does not exist, and
+/// for frustum transforms, other grid types, empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if the box
+/// exceeds `maximumVoxels`, before allocating it.
 Volume readVdb(const std::filesystem::path& file, const ReadRequest& request);
-inline Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels,
-                      const MoreGrids& more = {}, const Progress& progress = {}) {
-  return readVdb(file, {.grid = gridName, .maximumVoxels = maximumVoxels, .more = more, .progress = progress});
-}
+Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels, const MoreGrids& more = {},
+               const Progress& progress = {});
 
 /// Where the voxels of a file are, as far as its header says without reading them.
 struct VdbExtent {

@@ -1,7 +1,5 @@
 #include "engine/volume/vdb_channels.h"
 
-#include <openvdb/tools/GridTransformer.h>
-
 #include <algorithm>
 #include <array>
 #include <atomic>
@@ -11,8 +9,21 @@
 #include "engine/core/error.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/vdb_bricks.h"
+#include "engine/volume/vdb_lattice.h"
 
 namespace freevoxels {
+
+bool isSameLattice(const openvdb::math::Transform& a, const openvdb::math::Transform& b, const openvdb::CoordBBox& box) {
+  constexpr double kFarthest = 1e-2;  // voxels
+  if (a == b || box.empty()) return true;
+  for (int corner = 0; corner < 8; ++corner) {
+    const openvdb::Vec3d index(box.min()[0] + (corner & 1) * double(box.dim()[0]), box.min()[1] + (corner >> 1 & 1) * double(box.dim()[1]),
+                               box.min()[2] + (corner >> 2) * double(box.dim()[2]));
+    const openvdb::Vec3d there = b.worldToIndex(a.indexToWorld(index)) - index;
+    if (!(there.length() < kFarthest)) return false;
+  }
+  return true;
+}
 
 namespace {
 
@@ -33,19 +44,6 @@ const VdbFile::Entry* find(VdbFile& file, GridRole role, const GridRequest& requ
                            const std::function<bool(const VdbFile::Entry&)>& suits) {
   if (!request.name.empty() && mayBeMissing && !file.has(request.name)) return nullptr;
   return request.name.empty() ? file.findByRole(role, suits) : &file.choose(request.name);
-}
-
-/// Whether the voxels of two lattices are in the same places, up to rounding, as far as `box` reaches.
-bool isSameLattice(const openvdb::math::Transform& a, const openvdb::math::Transform& b, const openvdb::CoordBBox& box) {
-  constexpr double kFarthest = 1e-2;  // voxels
-  if (a == b || box.empty()) return true;
-  for (int corner = 0; corner < 8; ++corner) {
-    const openvdb::Vec3d index(box.min()[0] + (corner & 1) * double(box.dim()[0]), box.min()[1] + (corner >> 1 & 1) * double(box.dim()[1]),
-                               box.min()[2] + (corner >> 2) * double(box.dim()[2]));
-    const openvdb::Vec3d there = b.worldToIndex(a.indexToWorld(index)) - index;
-    if (!(there.length() < kFarthest)) return false;
-  }
-  return true;
 }
 
 /// A colour clamped to 0..1, and whether it was outside of that range.
@@ -119,10 +117,6 @@ TemperatureGrid toTemperature(const openvdb::FloatGrid& grid, const std::string&
   return result;
 }
 
-}  // namespace
-
-namespace {
-
 /// Without the grids that nobody asks for, where what is drawn as density is something else: a pressure does not burn.
 MoreGrids suitable(MoreGrids more, const VdbFile::Entry* density) {
   const GridRole role = density ? roleOfName(density->baseName).role : GridRole::Density;
@@ -171,30 +165,13 @@ VdbChannels::VdbChannels(VdbFile& file, const VdbFile::Entry* density, const Mor
         fail(ErrorKind::Input, "grid '{}' of '{}' cannot be rendered: {}", entry->name, file.path().string(), why);
 }
 
-template <typename Grid>
-std::shared_ptr<const Grid> VdbChannels::onLattice(std::shared_ptr<const Grid> grid, const openvdb::math::Transform& lattice,
-                                                   const VdbFile::Entry& entry) {
-  const openvdb::CoordBBox box = grid->evalActiveVoxelBoundingBox();
-  if (isSameLattice(grid->transform(), lattice, box)) return grid;
-  const double growth = std::abs(grid->transform().baseMap()->determinant() / lattice.baseMap()->determinant());
-  constexpr double kMostVoxels = 1e10;
-  if (double(grid->activeVoxelCount()) * growth > kMostVoxels)
-    fail(ErrorKind::OutOfMemory, "grid '{}' of '{}' has voxels that are {:.0f} times as large as those of the density: resample it first",
-         entry.name, file_.path().string(), growth);
-  auto resampled = std::make_shared<Grid>(grid->background());
-  resampled->setTransform(lattice.copy());
-  openvdb::tools::resampleToMatch<openvdb::tools::BoxSampler>(*grid, *resampled);
-  remarks_.push_back(fmt::format("grid '{}' is resampled to the voxels of the densities", entry.name));
-  return resampled;
-}
-
 void VdbChannels::read(const openvdb::math::Transform& lattice) {
-  if (temperature_) temperatures_ = onLattice(asFloatGrid(file_.read(*temperature_)), lattice, *temperature_);
+  if (temperature_) temperatures_ = onLattice(asFloatGrid(file_.read(*temperature_)), lattice, file_, *temperature_, remarks_);
   if (!albedo_) return;
   const openvdb::GridBase::ConstPtr grid = file_.read(*albedo_);
   openvdb::Vec3SGrid::ConstPtr colors = openvdb::gridConstPtrCast<openvdb::Vec3SGrid>(grid);
   if (!colors) colors = std::make_shared<const openvdb::Vec3SGrid>(*openvdb::gridConstPtrCast<openvdb::Vec3DGrid>(grid));
-  albedos_ = onLattice(std::move(colors), lattice, *albedo_);
+  albedos_ = onLattice(std::move(colors), lattice, file_, *albedo_, remarks_);
 }
 
 const VdbFile::Entry* VdbChannels::emptyFlames() const {

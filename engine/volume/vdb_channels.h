@@ -26,10 +26,6 @@ class VdbChannels {
   void addTo(Volume& volume);
 
  private:
-  template <typename Grid>
-  std::shared_ptr<const Grid> onLattice(std::shared_ptr<const Grid> grid, const openvdb::math::Transform& lattice,
-                                        const VdbFile::Entry& entry);
-
   /// The grid of flames of a fire that does not burn: it has no voxels. Null if there is none.
   const VdbFile::Entry* emptyFlames() const;
 

@@ -12,6 +12,7 @@
 #include <limits>
 #include <vector>
 
+#include "engine/volume/labels.h"
 #include "engine/volume/openvdb_trees.h"
 #include "engine/volume/volume.h"
 
@@ -60,6 +61,15 @@ struct LevelSetToDensity {
     return density > 0.0f ? density : kInactiveVoxel;
   }
   float tile(float distance, bool active) const { return (*this)(distance, active); }
+};
+
+/// The label of a voxel, where it is shown (labels.h).
+struct ShownLabel {
+  static constexpr bool kKeepsInactive = false;
+  static constexpr int kMargin = 2;  // voxels around it, as of level sets
+  const Labels* labels;
+  float operator()(float value, bool active) const { return active && labels->shows(labelOf(value)) ? value : kInactiveVoxel; }
+  float tile(float value, bool active) const { return (*this)(value, active); }
 };
 
 /// Calls `visit(box, density)` for the tiles of a node, each of `edge` voxels along an edge, that `toDensity` keeps.
@@ -133,9 +143,10 @@ bool isLevelSet(const openvdb::GridBase& grid);
 /// Whether the distances of a level set are negative outside, as its background says.
 bool isInverted(const openvdb::GridBase& grid);
 
-/// Calls `action(toDensity)` with the conversion for the grid's class.
+/// Calls `action(toDensity)` with the conversion for the grid's class, or for labels, unless these are null.
 template <typename Action>
-auto withDensity(const openvdb::GridBase& grid, const Action& action) {
+auto withDensity(const openvdb::GridBase& grid, const Labels* labels, const Action& action) {
+  if (labels != nullptr) return action(ShownLabel{labels});
   if (!isLevelSet(grid)) return action(FogToDensity{.hasEmptyTiles = isFog(grid)});
   const double voxelSize = std::cbrt(std::abs(grid.transform().baseMap()->determinant()));
   return action(LevelSetToDensity{float(voxelSize), isInverted(grid) ? -1.0f : 1.0f});

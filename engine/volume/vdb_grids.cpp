@@ -24,6 +24,10 @@ namespace freevoxels {
 
 namespace {
 
+bool isWholeType(const std::string& valueType) {
+  return valueType == "int32" || valueType == "int64" || valueType == "bool" || valueType == "mask";
+}
+
 namespace fs = std::filesystem;
 using openvdb::GridBase;
 using openvdb::io::GridDescriptor;
@@ -276,6 +280,13 @@ const VdbFile::Entry* VdbFile::chooseDensityByDefault() {
   if (possible.size() == 1) return possible.front();
   if (possible.empty() && hasTemperatures) return nullptr;
   if (scalars.size() == 1) return scalars.front();
+  std::vector<const Entry*> labels;
+  for (const Entry& entry : entries_)
+    if (isWhole(entry)) labels.push_back(&entry);
+  if (scalars.empty() && labels.size() == 1) return labels.front();
+  if (scalars.empty() && labels.size() > 1)
+    fail(ErrorKind::Input, "'{}' has several grids of whole numbers; choose one with {}: {}", path_.string(), Parameter("grid"),
+         listOf(entries_));
   if (scalars.empty() && entries_.size() == 1) return &entries_.front();  // readVdb will say why it cannot be drawn
   if (scalars.empty()) fail(ErrorKind::Input, "'{}' has no float grid, only: {}; choose another file", path_.string(), listOf(entries_));
   fail(ErrorKind::Input,
@@ -346,7 +357,11 @@ void VdbFile::checkTree(const VdbHeader::Grid& grid) const {
 }
 
 bool isScalar(const VdbFile::Entry& entry) {
-  return whyTypeUnusable(entry.treeType, entry.valueType).empty();
+  return whyTypeUnusable(entry.treeType, entry.valueType).empty() && !isWhole(entry);
+}
+
+bool isWhole(const VdbFile::Entry& entry) {
+  return isWholeType(entry.valueType);
 }
 
 bool isColor(const VdbFile::Entry& entry) {
@@ -359,7 +374,7 @@ std::string whyTypeUnusable(const std::string& treeType, const std::string& valu
   if (!GridBase::isRegistered(treeType))
     return fmt::format("this OpenVDB does not know grids of type '{}'; convert it to a float grid",
                        oneLine(treeType));
-  if (valueType == "float" || valueType == "half" || valueType == "double") return {};
+  if (valueType == "float" || valueType == "half" || valueType == "double" || isWholeType(valueType)) return {};
   if (valueType.starts_with("vec"))
     return fmt::format("it holds vectors ({}), not densities; choose a float grid", valueType);
   return fmt::format("it holds values of type {}, not densities; choose a float grid", valueType);
@@ -390,6 +405,14 @@ openvdb::FloatGrid::ConstPtr asFloatGrid(const GridBase::ConstPtr& grid) {
   if (const auto floats = openvdb::gridConstPtrCast<FloatGrid>(grid)) return floats;
   if (const auto doubles = openvdb::gridConstPtrCast<openvdb::DoubleGrid>(grid))
     return std::make_shared<const FloatGrid>(*doubles);
+  if (const auto numbers = openvdb::gridConstPtrCast<openvdb::Int32Grid>(grid)) return std::make_shared<const FloatGrid>(*numbers);
+  if (const auto numbers = openvdb::gridConstPtrCast<openvdb::Int64Grid>(grid)) return std::make_shared<const FloatGrid>(*numbers);
+  if (const auto truths = openvdb::gridConstPtrCast<openvdb::BoolGrid>(grid)) return std::make_shared<const FloatGrid>(*truths);
+  if (const auto mask = openvdb::gridConstPtrCast<openvdb::MaskGrid>(grid)) {
+    const auto floats = FloatGrid::create(std::make_shared<openvdb::FloatTree>(mask->tree(), 0.0f, 1.0f, openvdb::TopologyCopy()));
+    floats->setTransform(mask->transform().copy());
+    return floats;
+  }
 #if OPENVDB_LIBRARY_MAJOR_VERSION_NUMBER >= 13  // the first with half grids in memory
   if (const auto halves = openvdb::gridConstPtrCast<openvdb::HalfGrid>(grid))
     return std::make_shared<const FloatGrid>(*halves);

@@ -92,8 +92,9 @@ class VdbFile {
   std::vector<openvdb::GridBase::Ptr> all_;       ///< in OpenVDB's order, once one was read that has a place
 };
 
-/// Whether the grid has scalars, or colours, by OpenVDB's names of value types.
+/// Whether the grid has real numbers, whole numbers (of which booleans and masks are 0 and 1), or colours, by OpenVDB's names of types.
 bool isScalar(const VdbFile::Entry& entry);
+bool isWhole(const VdbFile::Entry& entry);
 bool isColor(const VdbFile::Entry& entry);
 
 /// Why a grid of this type cannot be drawn, in one clause; empty if it can.
@@ -103,7 +104,7 @@ std::string whyTransformUnusable(const openvdb::math::Transform& transform);
 inline constexpr const char* kEmptyGridClause = "it is empty: no voxel is active";
 inline constexpr const char* kNothingInsideClause = "no voxel is inside the level set";
 
-/// The grid itself if it is a float grid, a float copy of a half or double grid, or null for any other type.
+/// The grid itself if it is a float grid, a float copy of one of other numbers, or null for any other type.
 openvdb::FloatGrid::ConstPtr asFloatGrid(const openvdb::GridBase::ConstPtr& grid);
 
 }  // namespace freevoxels

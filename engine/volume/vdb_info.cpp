@@ -126,14 +126,15 @@ std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree
 constexpr std::int64_t kLongestEdge = 1 << 20;
 
 /// Describes the box that readVdb would return, and its occupied blocks.
-void describeBox(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
+void describeBox(const VdbFile::Entry& entry, const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
   const openvdb::FloatGrid::ConstPtr floats = asFloatGrid(grid);
   std::vector<const FloatTree::LeafNodeType*> leaves;
   floats->tree().getNodes(leaves);
-  withDensity(*grid, [&](const auto& toDensity) {
+  const Labels labels;
+  withDensity(*grid, isWhole(entry) ? &labels : nullptr, [&](const auto& toDensity) {
     const openvdb::CoordBBox box = boundsOf(floats->tree(), leaves, toDensity);
     if (box.empty()) {
-      info.unusable = kNothingInsideClause;
+      info.unusable = isWhole(entry) ? kNoLabelClause : kNothingInsideClause;
       return;
     }
     const glm::i64vec3 extent = extentOf(box);
@@ -162,6 +163,7 @@ GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
   info.valueType = entry.valueType;
   info.gridClass = gridClassName(openvdb::GRID_UNKNOWN);
   info.unusable = whyTypeUnusable(entry.treeType, entry.valueType);
+  info.areLabels = isWhole(entry);
   info.isTemperature = hasTemperatures(entry);
   if (!openvdb::GridBase::isRegistered(entry.treeType)) return info;
 
@@ -173,7 +175,7 @@ GridInfo describe(VdbFile& file, const VdbFile::Entry& entry) {
   if (info.unusable.empty()) info.unusable = whyTransformUnusable(grid->transform());
   describeVoxels(grid, info);
   if (info.unusable.empty() && info.activeVoxels == 0) info.unusable = kEmptyGridClause;
-  if (info.unusable.empty()) describeBox(grid, info);
+  if (info.unusable.empty()) describeBox(entry, grid, info);
   return info;
 }
 

@@ -64,7 +64,8 @@ std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, cons
   source->entry = source->file.chooseDensity(request.grid, request.more.mayBeMissing);
   const VdbChannels channels(source->file, source->entry, request.more);
   const auto isAsked = [](const std::optional<GridRequest>& grid) { return grid && grid->isRequired; };
-  if (!source->entry || isAsked(request.more.temperature) || isAsked(request.more.albedo)) return nullptr;
+  if (!source->entry || request.labels.of(isWhole(*source->entry)) || isAsked(request.more.temperature) || isAsked(request.more.albedo))
+    return nullptr;
   checkUsable(source->file, *source->entry);
   source->name = fmt::format("{} {}", path.filename().string(), source->entry->name);
   const openvdb::GridBase::ConstPtr grid = source->file.read(*source->entry);

@@ -10,6 +10,7 @@
 #include "engine/volume/vdb_bricks.h"
 #include "engine/volume/vdb_channels.h"
 #include "engine/volume/vdb_grids.h"
+#include "engine/volume/vdb_lattice.h"
 #include "engine/volume/vdb_volume.h"
 
 namespace freevoxels {
@@ -50,16 +51,22 @@ FloatGrid::ConstPtr clippedGrid(const FloatGrid& grid, const CoordBBox& box) {
   return part;
 }
 
+/// How the values of a grid are drawn if they are labels; null if they are not.
+const Labels* labelsOf(const ReadRequest& request, const VdbFile::Entry& entry) {
+  return request.labels.of(isWhole(entry));
+}
+
 /// Makes the volume of the box around the voxels that `toDensity` keeps and around the channels.
 template <typename ToDensity>
-Volume toVolume(FloatGrid::ConstPtr grid, const ToDensity& toDensity, const std::string& source, bool savedAsHalf, VdbChannels& channels,
-                const ReadRequest& request) {
+Volume toVolume(FloatGrid::ConstPtr grid, const ToDensity& toDensity, const std::string& source, const VdbFile::Entry& entry,
+                VdbChannels& channels, const ReadRequest& request) {
   std::vector<const VdbLeaf*> leaves;
   grid->tree().getNodes(leaves);
   CoordBBox bounds = boundsOf(grid->tree(), leaves, toDensity);
   bounds.expand(channels.bounds());
   if (bounds.empty())
-    throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: {}", source, kNothingInsideClause));
+    throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: {}", source,
+                                                         labelsOf(request, entry) ? kNoLabelClause : kNothingInsideClause));
   const CoordBBox whole = bounds;
   if (const CoordBBox part = clippedBounds(bounds, request.clipBox, request.maximumVoxels); part != bounds) {
     checkSize(part, request.maximumVoxels, source);
@@ -74,8 +81,11 @@ Volume toVolume(FloatGrid::ConstPtr grid, const ToDensity& toDensity, const std:
   Volume volume = boxVolume(grid->transform(), bounds, source);
   volume.isPart = request.clipBox && voxelsIn(extentOf(whole)) > double(request.maximumVoxels);
   volume.scalars = bricksOf(grid->tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity, request.progress);
-  if (savedAsHalf) limitOverflow(volume.scalars, volume.overflownVoxels);
-  summariseValues(volume, request.noData ? request.noData->scalar() : std::nullopt);
+  if (entry.valueType == "half") limitOverflow(volume.scalars, volume.overflownVoxels);
+  if (const Labels* labels = labelsOf(request, entry))
+    showLabels(volume, *labels);
+  else
+    summariseValues(volume, request.noData ? request.noData->scalar() : std::nullopt);
   channels.addTo(volume);
   if (volume.activeVoxels == 0 && (!volume.temperature || volume.temperature->activeVoxels == 0))
     throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: none of its {} active voxels has a number that is data",
@@ -121,13 +131,58 @@ Volume readField(const std::filesystem::path& path, const std::string& grid, Rea
   return volume;
 }
 
+/// The grid of a channel: of its name, or its number among all grids.
+const VdbFile::Entry& entryOf(VdbFile& file, const ChannelStyle& channel) {
+  const bool isNumber = std::ranges::all_of(channel.name, [](char c) { return c >= '0' && c <= '9'; });
+  return file.has(channel.name) || !isNumber ? file.choose(channel.name) : file.entries()[channelNumber(channel, file.entries().size())];
+}
+
+/// Several grids in one volume.
+Volume readMixture(VdbFile& file, const ReadRequest& request) {
+  std::vector<FloatGrid::ConstPtr> grids;
+  std::vector<std::string> remarks;
+  CoordBBox bounds;
+  constexpr FogToDensity kScalar{.hasEmptyTiles = true};
+  for (const ChannelStyle& channel : request.channels) {
+    const VdbFile::Entry& entry = entryOf(file, channel);
+    checkUsable(file, entry);
+    const FloatGrid::ConstPtr grid = asFloatGrid(file.read(entry));
+    grids.push_back(grids.empty() ? grid : onLattice(grid, grids.front()->transform(), file, entry, remarks));
+    std::vector<const VdbLeaf*> leaves;
+    grids.back()->tree().getNodes(leaves);
+    bounds.expand(boundsOf(grids.back()->tree(), leaves, kScalar));
+  }
+  const std::string source = fmt::format("{} with {} channels", file.path().filename().string(), grids.size());
+  if (bounds.empty()) throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: {}", source, kEmptyGridClause));
+  const CoordBBox box = clippedBounds(bounds, request.clipBox, request.maximumVoxels);
+  checkSize(box, request.maximumVoxels, source);
+  Volume volume = boxVolume(grids.front()->transform(), box, source);
+  volume.isPart = box != bounds;
+  std::vector<ScalarBricks> values;
+  for (FloatGrid::ConstPtr& grid : grids) {
+    if (volume.isPart) grid = clippedGrid(*grid, box);
+    std::vector<const VdbLeaf*> leaves;
+    grid->tree().getNodes(leaves);
+    values.push_back(bricksOf(grid->tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, kScalar, request.progress));
+    grid.reset();
+  }
+  mixChannels(volume, request.channels, std::move(values));
+  volume.remarks = std::move(remarks);
+  volume.warnings = file.warnings();
+  return volume;
+}
+
 }  // namespace
 
 Volume readVdb(const std::filesystem::path& path, const ReadRequest& request) {
   VdbFile file(path, {.progress = request.progress});
+  if (!request.channels.empty()) return readMixture(file, request);
   const VdbFile::Entry* const density = file.chooseDensity(request.grid, request.more.mayBeMissing);
   if (density) checkUsable(file, *density);
-  VdbChannels channels(file, density, request.more);
+  const Labels* const labels = density ? labelsOf(request, *density) : nullptr;
+  MoreGrids more = request.more;
+  if (labels != nullptr) more.albedo.reset();  // labels have their own colours
+  VdbChannels channels(file, density, more);
   if (!density && !channels.temperature())
     throw EmptyVolumeError(ErrorKind::Input, fmt::format("'{}' has no density: {} draws one of its grids as a density", path.string(),
                                                          Parameter("grid", "NAME")));
@@ -139,9 +194,8 @@ Volume readVdb(const std::filesystem::path& path, const ReadRequest& request) {
     channels.read(grid->transform());
     if (grid->activeVoxelCount() == 0 && channels.bounds().empty())
       throw EmptyVolumeError(ErrorKind::Input, whyUnusable(file, entry, kEmptyGridClause));
-    Volume volume = withDensity(*grid, [&](const auto& toDensity) {
-      return toVolume(asFloatGrid(grid), toDensity, source, entry.valueType == "half", channels, request);
-    });
+    Volume volume = withDensity(
+        *grid, labels, [&](const auto& toDensity) { return toVolume(asFloatGrid(grid), toDensity, source, entry, channels, request); });
     const bool isField = !density && isCold(volume) && !request.more.mayBeMissing && !request.more.temperature->isRequired;
     if (isField) return readField(path, entry.name, request);
     finishVolume(file, entry, *grid, volume);
@@ -152,6 +206,16 @@ Volume readVdb(const std::filesystem::path& path, const ReadRequest& request) {
     fail(ErrorKind::OutOfMemory, "not enough memory for {}; free some, or resample or crop the volume",
          source);
   }
+}
+
+Volume readVdb(const std::filesystem::path& path, const std::string& gridName, std::uint64_t maximumVoxels, const MoreGrids& more,
+               const Progress& progress) {
+  ReadRequest request;
+  request.grid = gridName;
+  request.maximumVoxels = maximumVoxels;
+  request.more = more;
+  request.progress = progress;
+  return readVdb(path, request);
 }
 
 std::optional<VdbExtent> extentOfVdb(const std::filesystem::path& path, const std::string& gridName, const MoreGrids& more) {

@@ -54,11 +54,11 @@ void limitOverflow(ScalarBricks& scalars, std::uint64_t& overflown) {
 
 void finishVolume(VdbFile& file, const VdbFile::Entry& entry, const openvdb::GridBase& grid, Volume& volume) {
   volume.warnings.insert(volume.warnings.begin(), file.warnings().begin(), file.warnings().end());
-  volume.isLevelSet = isLevelSet(grid);
-  volume.isFog = !volume.isLevelSet && isFog(grid);
-  if (volume.isLevelSet && grid.getGridClass() != openvdb::GRID_LEVEL_SET)
+  volume.isSolid = volume.isSolid || isLevelSet(grid);
+  volume.isFog = !volume.isSolid && isFog(grid);
+  if (isLevelSet(grid) && grid.getGridClass() != openvdb::GRID_LEVEL_SET)
     volume.remarks.emplace_back("its values are distances from a surface, as those of a level set");
-  if (volume.isLevelSet && isInverted(grid))
+  if (isLevelSet(grid) && isInverted(grid))
     volume.remarks.emplace_back("distances of the level set are negative outside, and count the other way round");
   orientScan(volume);
   if (!file.isFromBlender(entry)) return;

@@ -136,7 +136,7 @@ Volume outlineOf(const Volume& volume) {
                  .indexToWorld = volume.indexToWorld,
                  .up = volume.up,
                  .upReason = volume.upReason,
-                 .isLevelSet = volume.isLevelSet,
+                 .isSolid = volume.isSolid,
                  .activeVoxels = volume.activeVoxels,
                  .nanVoxels = volume.nanVoxels,
                  .negativeVoxels = volume.negativeVoxels,
@@ -145,12 +145,15 @@ Volume outlineOf(const Volume& volume) {
   if (volume.temperature) {
     const TemperatureGrid& grid = *volume.temperature;
     outline.temperature = TemperatureGrid{.name = grid.name,
+                                          .isRadiance = grid.isRadiance,
                                           .activeVoxels = grid.activeVoxels,
                                           .nanVoxels = grid.nanVoxels,
                                           .minimum = grid.minimum,
                                           .maximum = grid.maximum};
   }
-  if (volume.albedo) outline.albedo = AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels};
+  if (volume.albedo)
+    outline.albedo =
+        AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels, .isMade = volume.albedo->isMade};
   return outline;
 }
 

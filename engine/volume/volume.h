@@ -21,6 +21,7 @@ struct Outliers;
 /// Temperatures in addition to a volume's scalars.
 struct TemperatureGrid {
   std::string name;
+  bool isRadiance = false;  ///< whether values are light that is sent out in the colours of the albedo grid, and no temperatures
   ScalarBricks values;  ///< like Volume::scalars, for the same box, in any unit
   std::uint64_t activeVoxels = 0, nanVoxels = 0;
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
@@ -34,6 +35,7 @@ struct AlbedoGrid {
   std::string name;
   std::array<ScalarBricks, 3> values;  ///< red, green and blue, each like Volume::scalars, for the same box
   std::uint64_t clippedVoxels = 0;     ///< voxels that were clamped to 0..1; NaN becomes 0
+  bool isMade = false;                 ///< whether they were made of labels (labels.h) or channels (channels.h), and are no grid of a file
 };
 
 struct Volume {
@@ -44,7 +46,7 @@ struct Volume {
   glm::dmat4 indexToWorld{1.0};
   glm::dvec3 up{0.0, 1.0, 0.0};  ///< up direction in the world, as far as the file says
   std::string upReason;          ///< why it is not +y, as a clause: "Blender wrote the file"
-  bool isLevelSet = false;       ///< whether the file had a level set; scalars are then 1 inside and fall to 0 across its surface
+  bool isSolid = false;          ///< whether the scalars are densities of solids: 1 inside of a level set, or where labels are (labels.h)
   ScalarBricks scalars;  ///< finite values, or kInactiveVoxel
 
   std::uint64_t activeVoxels = 0;

@@ -20,19 +20,33 @@ void checkTransform(const glm::dmat4& indexToWorld) {
 
 }  // namespace
 
+Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& indexToWorld, const std::vector<ChannelStyle>& channels) {
+  checkTransform(indexToWorld);
+  Volume volume{.source = "the array", .dimensions = values.front().dimensions(), .indexToWorld = indexToWorld};
+  normaliseWorld(volume);
+  mixChannels(volume, channels, std::move(values));
+  if (volume.activeVoxels == 0 && !(volume.temperature && volume.temperature->activeVoxels > 0))
+    fail(ErrorKind::Input, "the channels of the array hold nothing above the beginning of their windows: give them other windows");
+  return volume;
+}
+
 glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin) {
   return glm::scale(glm::translate(glm::dmat4(1.0), origin), spacing);
 }
 
-Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, bool knowsNoData) {
+Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, bool knowsNoData, const Labels* labels) {
   checkTransform(indexToWorld);
   Volume volume{.source = "the array", .dimensions = scalars.dimensions(), .indexToWorld = indexToWorld, .scalars = std::move(scalars)};
   normaliseWorld(volume);
-  summariseValues(volume);
+  if (labels != nullptr)
+    showLabels(volume, *labels);
+  else
+    summariseValues(volume);
   const glm::ivec3 size = volume.dimensions;
   if (volume.activeVoxels == 0)
-    fail(ErrorKind::Input, "the array of {} x {} x {} voxels holds no data: all its values are NaN, or mark that there is none",
-         size.x, size.y, size.z);
+    fail(ErrorKind::Input, "the array of {} x {} x {} voxels holds no data: {}", size.x, size.y, size.z,
+         labels != nullptr ? kNoLabelClause : "all its values are NaN, or mark that there is none");
+  if (labels != nullptr) return volume;
   volume.isFog = looksLikeFog(volume);
   if (volume.isFog) {
     summariseValues(volume, 0.0f);

@@ -94,7 +94,7 @@ ClassifiedVoxel VoxelClassifier::at(glm::ivec3 voxel) const {
     if (volume_.albedo) result.color = albedoOf(classification_, *volume_.albedo, voxel);
   }
   if (classification_.emission && volume_.temperature)
-    result.emission = emittedLight(*classification_.emission, volume_.temperature->values.at(voxel));
+    result.emission = emittedLight(*classification_.emission, volume_, voxel, volume_.temperature->values.at(voxel));
   return result;
 }
 

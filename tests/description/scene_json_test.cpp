@@ -4,6 +4,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <nlohmann/json.hpp>
 
 #include "tests/refusal.h"
@@ -87,6 +89,18 @@ SceneDescription others(const TemporaryFolder& folder) {
   return scene;
 }
 
+/// The fields that exclude some of both.
+SceneDescription labelled() {
+  SceneDescription scene;
+  scene.classification.labels = Labels{.showsAll = true, .styles = {{-3, {.opacity = 0.5f}}, {7, {.color = glm::vec3(1, 0, 0)}}}};
+  return scene;
+}
+SceneDescription dyed() {
+  SceneDescription scene;
+  scene.classification.channels = {{.name = "0"}, {.name = "gfp", .weight = 2.5f, .window = std::array{0.25f, 4000.0f}, .emits = true}};
+  return scene;
+}
+
 nlohmann::json jsonIn(const std::filesystem::path& file) {
   return nlohmann::json::parse(readBytes(file));
 }
@@ -95,7 +109,7 @@ nlohmann::json jsonIn(const std::filesystem::path& file) {
 
 TEST(SceneJson, DescriptionsSurviveTheWayToAFileAndBack) {
   const TemporaryFolder folder;
-  for (const SceneDescription& scene : {everything(folder), others(folder), SceneDescription{}}) {
+  for (const SceneDescription& scene : {everything(folder), others(folder), labelled(), dyed(), SceneDescription{}}) {
     writeScene(folder / "s.json", scene);
     EXPECT_EQ(readScene(folder / "s.json"), scene) << readBytes(folder / "s.json");
   }
@@ -121,9 +135,10 @@ TEST(SceneJson, AKeyWithoutEffectOfAnEarlierVersionIsReadWithOneSentence) {
 
 TEST(SceneJson, TheTestsAboveHaveEveryField) {
   const TemporaryFolder folder;
-  const SceneDescription a = everything(folder), b = others(folder);
+  const std::array scenes{everything(folder), others(folder), labelled(), dyed()};
   for (const SceneField& field : sceneFields())
-    EXPECT_TRUE(!field.texts(a).empty() || !field.texts(b).empty()) << field.section << "." << field.name;
+    EXPECT_TRUE(std::ranges::any_of(scenes, [&](const SceneDescription& scene) { return !field.texts(scene).empty(); }))
+        << field.section << "." << field.name;
 }
 
 TEST(SceneJson, FileNamesAreRelativeToTheFile) {
@@ -170,7 +185,7 @@ TEST(SceneJson, WrongFilesAreRefusedByFileAndKey) {
   expect(R"({"method": {"draw": "sketch"}})", "draw takes 'gather' or 'splats', not 'sketch'");
   expect(R"({"light": {"lights": {"direction": [1, 0, 0]}}})", R"("light.lights" takes a list)");
   expect(R"({"light": {"lights": [{"direction": [0, 0, 0]}]}})", "points nowhere");
-  expect(R"({"output": {"aov": "z"}})", "aov takes depth, position, normal and transmittance");
+  expect(R"({"output": {"aov": "z"}})", "aov takes depth, position, normal, transmittance, lights and channels");
 }
 
 TEST(SceneJson, DeepNestingIsRefused) {

@@ -34,6 +34,10 @@ def grid_of(name, shape):
         return pyopenvdb.createLevelSetSphere(radius=min(shape) / 2, center=[n / 2 for n in shape[::-1]], voxelSize=1.0)
     if name == "nothing":
         return pyopenvdb.FloatGrid()
+    if name == "parts":
+        grid = pyopenvdb.BoolGrid()
+        grid.copyFromArray(density > 0.4)
+        return grid
     if name == "paint":
         grid, values = pyopenvdb.Vec3SGrid(), np.stack([density, 1 - density, 0.5 + 0 * density], axis=-1).clip(0, 1)
     else:

@@ -117,7 +117,7 @@ class ChannelsTest(unittest.TestCase):
         array = VOLUMES["a cube"][0]
         image, channels = freevoxels.render(array, size=(6, 5), aov="normal")
         for call, sentence in (
-            (lambda: freevoxels.render(array, aov="dept"), "'aov' takes depth, position, normal and transmittance, .* not 'dept'"),
+            (lambda: freevoxels.render(array, aov="dept"), "'aov' takes depth, position, normal, transmittance, lights and channels, .* not 'dept'"),
             (lambda: freevoxels.render(array, aov=""), "'aov' takes depth"),
             (lambda: freevoxels.render(array, aov=5), "'aov' takes names of channels as text, not int"),
             (lambda: freevoxels.render(array, aov=array), "'aov' takes names of channels as text, not ndarray"),

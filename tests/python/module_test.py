@@ -100,6 +100,57 @@ class RenderTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "density-scale"):
             freevoxels.render(cloud, volumes=[{**half, "densityscale": 1}])
 
+    def test_volumes_in_memory_are_drawn_together(self):
+        soft, view = blob(), dict(size=(32, 24), unlit=True, density_scale=2)
+        first, second = freevoxels.Volume(soft), freevoxels.Volume(soft, origin=(6, 1, 0))
+        named = [{"volume": second, "density_scale": 2}]
+        together = freevoxels.render(first, volumes=named, **view)
+        renderer = freevoxels.Renderer(first, volumes=[{"volume": freevoxels.Volume(soft, origin=(6, 1, 0)), "density_scale": 2}], **view)
+        np.testing.assert_array_equal(renderer.render(), together)
+        np.testing.assert_array_equal(freevoxels.render([first, named[0]], **view), together)
+        np.testing.assert_array_equal(freevoxels.render((second, {"volume": first, "density_scale": 2}), **view), together)
+        self.assertFalse(np.array_equal(freevoxels.render(first, **view), together))
+        moved = {"volume": first, "density_scale": 2, "transform": (6, 1, 0)}
+        np.testing.assert_allclose(freevoxels.render([first, moved], **view), together, atol=1e-6)
+        freevoxels.render([first, soft], **view)
+        with self.assertRaisesRegex(ValueError, "memory:77777"):
+            freevoxels.render(first, volumes=["memory:77777"], **view)
+
+    def test_labels_are_solids_of_their_colours(self):
+        parts = np.zeros((12, 12, 14), "int16")
+        parts[2:10, 2:10, 2:7], parts[2:10, 2:10, 7:12] = 4, -1
+        image = freevoxels.render(parts, labels="4=red,-1=#0000ff", size=(40, 32), orbit=(0, 0), unlit=True)
+        seen = image[image[..., 3] > 0.95]
+        self.assertGreater(len(seen), 200)
+        self.assertEqual(seen[:, 1].max(), 0)
+        self.assertTrue((seen[:, 0] > 0.9).sum() > 60 < (seen[:, 2] > 0.9).sum(), "both parts are seen")
+        alone = freevoxels.render(freevoxels.Volume(parts, labels=[4]), size=(40, 32), orbit=(0, 0), unlit=True)
+        self.assertGreater((image[..., 3] - alone[..., 3]).max(), 0.9)
+        with self.assertRaisesRegex(ValueError, "labels"):
+            freevoxels.Renderer(freevoxels.Volume(parts), labels="all").render()
+
+    def test_channels_add_up(self):
+        dyes = np.stack([blob(), np.roll(blob(), 3, axis=2)])
+        options = dict(size=(40, 32), unlit=True, emission=0.2)
+        both = freevoxels.render(dyes, channel=["0:red:0,1:emission", "1:#00ff00:0,1:emission"], **options)
+        red = freevoxels.render(dyes, channel="0:red:0,1:emission", **options)
+        self.assertGreater(both[..., 0].max(), 0.05)
+        self.assertGreater(both[..., 1].max(), 0.05)
+        self.assertEqual(red[..., 1].max(), 0)
+        for wrong, sentence in ((dict(channel=["2"]), "2 channels"), (dict(channel=["0", "1:emission"]), "emission")):
+            with self.assertRaisesRegex(ValueError, sentence):
+                freevoxels.render(dyes, **wrong)
+        with self.assertRaisesRegex(ValueError, "channel"):
+            freevoxels.render(dyes)
+
+    def test_layers_of_lights_add_up_to_the_image(self):
+        cloud = freevoxels.Volume.open("procedural:cloud", resolution=12)
+        lights = [{"direction": (1, 1, 0)}, {"direction": (-1, 0, 1), "color": (0, 0.5, 1)}]
+        image, layers = freevoxels.render(cloud, size=(24, 20), light=lights, ambient=0.2, aov="lights")
+        self.assertEqual(set(layers), {"light1", "light2", "ambient"})
+        np.testing.assert_allclose(sum(layers.values()), image[..., :3], atol=1e-6)
+        self.assertEqual(layers["light2"][..., 0].max(), 0)
+
     def test_transfer_function_may_be_a_dictionary(self):
         points = {"opacity": [[0, 0], [1, 0.5]], "color": [[0, 1, 0, 0], [1, 1, 0, 0]]}
         image = freevoxels.render(blob(), transfer_function=points, unlit=True, size=(40, 40))

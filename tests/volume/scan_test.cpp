@@ -115,7 +115,7 @@ TEST(Scan, FogUniformVolumesAndLevelSetsAreNone) {
   })));
   EXPECT_FALSE(looksLikeScan(makeVolume({20, 20, 20}, glm::dmat4(1.0), [](int, int, int) { return 1.0f; })));
   Volume levelSet = nested(0.0f, 0.3f, 0.6f, 1.0f);
-  levelSet.isLevelSet = true;
+  levelSet.isSolid = true;
   EXPECT_FALSE(looksLikeScan(levelSet));
 }
 

@@ -207,12 +207,10 @@ TEST_F(Vdb, GridsOfOtherTypesAreRefusedByName) {
     return grid;
   };
   write({named<openvdb::Vec3SGrid>(fill(openvdb::Vec3SGrid::create(), openvdb::Vec3s(1.0f)), "velocity"),
-         named<openvdb::Int32Grid>(fill(openvdb::Int32Grid::create(), 1), "index"),
-         named<openvdb::BoolGrid>(fill(openvdb::BoolGrid::create(), true), "inside"),
+         named<openvdb::Vec3IGrid>(fill(openvdb::Vec3IGrid::create(), openvdb::Vec3i(1)), "index"),
          named<openvdb::points::PointDataGrid>(openvdb::points::PointDataGrid::create(), "points")});
   expectReadRefused({"'velocity'", file.string(), "vec3s"}, "velocity");
-  expectReadRefused({"'index'", file.string(), "int32"}, "index");
-  expectReadRefused({"'inside'", file.string(), "bool"}, "inside");
+  expectReadRefused({"'index'", file.string(), "vec3i"}, "index");
   expectReadRefused({"'points'", file.string(), "points, not a density field"}, "points");
   for (const GridInfo& info : describeVdb(file)) {
     EXPECT_FALSE(info.unusable.empty()) << info.name;

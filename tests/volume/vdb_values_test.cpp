@@ -67,7 +67,7 @@ TEST_F(Vdb, ALevelSetBecomesFogOfTheSameVolume) {
   for (const double radius : {0.31, 1.0, 4.0}) {  // the largest has inactive interior tiles of two levels
     write({openvdb::tools::createLevelSetSphere<FloatGrid>(float(radius), {0.3f, 0.2f, -0.1f}, kVoxelSize)});
     const Volume volume = read();
-    EXPECT_TRUE(volume.isLevelSet);
+    EXPECT_TRUE(volume.isSolid);
     double sum = 0.0;
     for (const float value : denseScalars(volume))
       if (value != kInactiveVoxel) sum += value;
@@ -201,7 +201,7 @@ TEST_F(Vdb, DistancesAreALevelSetWhateverTheClass) {
           grid->setGridClass(other);
           write({grid});
           const Volume volume = read();
-          EXPECT_TRUE(volume.isLevelSet);
+          EXPECT_TRUE(volume.isSolid);
           EXPECT_EQ(denseScalars(volume), denseScalars(wanted));
           ASSERT_EQ(volume.remarks.size(), 1u);
           EXPECT_NE(volume.remarks[0].find("level set"), std::string::npos);
@@ -216,7 +216,7 @@ TEST_F(Vdb, ValuesOfBothSignsAloneAreNoLevelSet) {
     for (int i = 0; i < 100; ++i) grid->tree().setValueOn(Coord(i % 5, i / 5 % 5, i / 25), float(i) * 11.0f - 500.0f);
     write({grid});
     const Volume volume = read();
-    EXPECT_FALSE(volume.isLevelSet) << background;
+    EXPECT_FALSE(volume.isSolid) << background;
     EXPECT_EQ(volume.activeVoxels, 100u);
   }
 }

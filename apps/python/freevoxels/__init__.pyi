@@ -39,7 +39,7 @@ class _Input(_Part, total=False):
     no_data: float | Literal["none"] | None
 
 class _Volumes(TypedDict, total=False):
-    volumes: Sequence_[_Path | Mapping[str, Any]]  # others in the same image: a file, or its options with "volume" and "transform"
+    volumes: Sequence_[_Path | Volume | Mapping[str, Any]]  # others in the same image: a file, a volume, or its options with "volume" and "transform"
 
 class _Camera(TypedDict, total=False):
     orbit: _Pair
@@ -58,6 +58,8 @@ class _Classification(TypedDict, total=False):
     albedo_grid: str
     transfer_function: _Path | Mapping[str, Any]
     classification: Literal["post", "pre"] | _Section
+    labels: _Numbers
+    channel: str | Sequence_[str]
 
 class _Emission(TypedDict, total=False):
     emission: bool | float | Literal["none"] | _Section
@@ -159,6 +161,8 @@ class Volume:
         temperature: ArrayLike | None = ...,
         clip_box: _Numbers | None = ...,
         clip_plane: _Numbers | None = ...,
+        labels: _Numbers | None = ...,
+        channel: str | Sequence_[str] | None = ...,
         input: _Section | None = ...,
     ) -> None: ...
     @staticmethod
@@ -263,7 +267,7 @@ class Sequence:
 
 @overload
 def render(
-    volume: ArrayLike | _Path | Volume | None = ...,
+    volume: ArrayLike | _Path | Volume | Sequence_[ArrayLike | _Path | Volume | Mapping[str, Any]] | None = ...,
     *,
     progress: _Progress | None = ...,
     depth: Literal[False] = ...,
@@ -272,7 +276,7 @@ def render(
 ) -> _Image: ...
 @overload
 def render(
-    volume: ArrayLike | _Path | Volume | None = ...,
+    volume: ArrayLike | _Path | Volume | Sequence_[ArrayLike | _Path | Volume | Mapping[str, Any]] | None = ...,
     *,
     progress: _Progress | None = ...,
     depth: Literal[True],
@@ -281,7 +285,7 @@ def render(
 ) -> tuple[_Image, _Depth]: ...
 @overload
 def render(
-    volume: ArrayLike | _Path | Volume | None = ...,
+    volume: ArrayLike | _Path | Volume | Sequence_[ArrayLike | _Path | Volume | Mapping[str, Any]] | None = ...,
     *,
     progress: _Progress | None = ...,
     depth: Literal[False] = ...,

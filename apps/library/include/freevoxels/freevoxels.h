@@ -116,8 +116,10 @@ class FREEVOXELS_API Volume {
   static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
   /// The same for renderers of any device, none of which is opened here.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
-  /// Copies the values of a box of `dimensions` (x, y, z) voxels, x fastest. NaN means no data.
-  static Volume copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement = {});
+  /// Copies the values of a box of `dimensions` (x, y, z) voxels, x fastest. NaN means no data. `scene`: its keys
+  /// "labels" and "channels" say what the values are; the boxes of channels, whose names are their numbers from 0 on, follow each other.
+  static Volume copy(std::span<const float> values, std::array<int, 3> dimensions, const Placement& placement = {},
+                     std::string_view scene = "{}");
 
   std::array<int, 3> dimensions() const;   ///< voxels along x, y and z
   std::uint64_t activeVoxels() const;      ///< voxels with data

@@ -1,0 +1,73 @@
+#include "apps/common/frame_layers.h"
+
+#include <algorithm>
+#include <cctype>
+#include <string>
+#include <vector>
+
+#include "engine/core/error.h"
+#include "engine/light_layers.h"
+#include "engine/octree/volume_limits.h"
+
+namespace freevoxels {
+
+namespace {
+
+bool mayEmit(const Scene& scene) {
+  const auto emits = [](const SceneVolume& volume) { return volume.classification.emission.has_value(); };
+  return scene.classification.emission || std::ranges::any_of(scene.added, emits);
+}
+
+void checkChannels(const SceneDescription& description, const Scene& scene, const FrameSettings& settings) {
+  const Parameter aov("aov", "channels");
+  const std::vector<ChannelStyle>& channels = description.classification.channels;
+  if (channels.empty()) fail(ErrorKind::Usage, "{} are layers of channels, and there are none: give {}", aov, Parameter("channel"));
+  if (description.input.volume.empty())
+    fail(ErrorKind::Usage, "{} reads the channels again, and an array has been read: draw it with one colour after the other", aov);
+  if (!scene.added.empty()) fail(ErrorKind::Usage, "{} is of one volume: leave out {}", aov, Parameter("add"));
+  if (!channels.front().emits && settings.lighting && settings.lighting->scattering != 1)
+    fail(ErrorKind::Usage, "light that is scattered more than once is no sum over channels: {} needs {} or {}", aov,
+         Parameter("scattering", "1"), Parameter("unlit"));
+}
+
+/// "dapi", or "channel0" where the name is no word that a layer may have.
+std::string layerName(const ChannelStyle& channel) {
+  std::string name = channel.name;
+  for (char& character : name)
+    if (std::isalnum(static_cast<unsigned char>(character)) == 0) character = '_';
+  return std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "channel" + name : name;
+}
+
+/// Adds a layer for each channel, with all others black, and returns their sum.
+std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, const SceneDescription& description, const Scene& scene,
+                                        const FrameSettings& settings, const Progress& progress) {
+  std::vector<glm::vec3> sum(image.pixels.size(), glm::vec3(0.0f));
+  const std::vector<ChannelStyle>& channels = description.classification.channels;
+  for (std::size_t i = 0; i < channels.size(); ++i) {
+    SceneDescription alone = description;
+    for (std::size_t other = 0; other < channels.size(); ++other)
+      alone.classification.channels[other].color = other == i ? channels[i].color.value_or(automaticChannelColor(i)) : glm::vec3(0.0f);
+    const Volume volume = alone.readVolume(kMaxNumberedVoxels);
+    Renderer renderer(device, volume, scene.classification, description.method.table());
+    const Image layer = renderer.render(scene.camera, settings, progress);
+    addLayer(image, layerName(channels[i]), layer);
+    for (std::size_t pixel = 0; pixel < sum.size(); ++pixel) sum[pixel] += glm::vec3(layer.pixels[pixel]);
+  }
+  return sum;
+}
+
+}  // namespace
+
+Image renderFrame(Renderer& renderer, const Device& device, const SceneDescription& description, const Scene& scene,
+                  const FrameSettings& settings, const Aovs& aovs, const Progress& progress) {
+  if (aovs.channels) checkChannels(description, scene, settings);
+  Image image = aovs.lights ? renderLightLayers(renderer, scene.camera, settings, mayEmit(scene), progress)
+                            : renderer.render(scene.camera, settings, progress);
+  if (!aovs.channels) return image;
+  const std::vector<glm::vec3> sum = addChannelLayers(image, device, description, scene, settings, progress);
+  if (aovs.lights) return image;
+  for (std::size_t pixel = 0; pixel < sum.size(); ++pixel) image.pixels[pixel] = glm::vec4(sum[pixel], image.pixels[pixel].a);
+  return image;
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,18 @@
+#pragma once
+// Frames with layers for lights and channels (Aovs::lights, Aovs::channels).
+
+#include "engine/core/stages.h"
+#include "engine/description/scene_description.h"
+#include "engine/image/image.h"
+#include "engine/renderer.h"
+#include "engine/vulkan/device.h"
+
+namespace freevoxels {
+
+/// Draws a frame of a scene with the layers that `aovs` names, but without its other channels (addChannels). `description` is that of
+/// `scene`. Channels are read again, once for each of them, so that they are those of a file. Fails with ErrorKind::Usage where there is
+/// nothing to make layers of, and where light is scattered more than once, which is no sum over channels.
+Image renderFrame(Renderer& renderer, const Device& device, const SceneDescription& description, const Scene& scene,
+                  const FrameSettings& settings, const Aovs& aovs, const Progress& progress);
+
+}  // namespace freevoxels

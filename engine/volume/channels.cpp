@@ -1,0 +1,110 @@
+#include "engine/volume/channels.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+#include "engine/core/error.h"
+#include "engine/core/parameter.h"
+#include "engine/volume/histogram.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// The window of a channel for which none is given.
+std::array<float, 2> automaticWindow(const ScalarBricks& values) {
+  constexpr int kBins = 4096;
+  constexpr double kBrighter = 0.001;  // part of the voxels
+  Volume channel{.dimensions = values.dimensions(), .scalars = values};
+  summariseValues(channel);
+  if (!(channel.minimum < channel.maximum)) return {std::min(channel.minimum, 0.0f), channel.maximum};
+  const Histogram histogram = histogramOf(channel, kBins);
+  std::uint64_t above = 0;
+  int bin = kBins;
+  while (bin > 1 && double(above + histogram.counts[std::size_t(bin - 1)]) <= kBrighter * double(channel.activeVoxels))
+    above += histogram.counts[std::size_t(--bin)];
+  return {channel.minimum, std::lerp(channel.minimum, channel.maximum, float(bin) / float(kBins))};
+}
+
+/// A channel as it adds to the sums.
+struct Part {
+  const ScalarBricks* values;
+  std::array<float, 2> window;
+  glm::vec3 color;
+  float weight;
+
+  float at(float scalar) const {
+    if (scalar == kInactiveVoxel || !(window[0] < window[1])) return 0.0f;
+    return weight * std::clamp((scalar - window[0]) / (window[1] - window[0]), 0.0f, 1.0f);
+  }
+};
+
+}  // namespace
+
+glm::vec3 automaticChannelColor(std::size_t place) {
+  constexpr std::array<glm::vec3, 8> kColors{
+      glm::vec3(0.05f, 1.0f, 0.05f), glm::vec3(1.0f, 0.05f, 1.0f), glm::vec3(0.05f, 0.9f, 1.0f), glm::vec3(1.0f, 0.8f, 0.05f),
+      glm::vec3(1.0f, 0.1f, 0.05f),  glm::vec3(0.1f, 0.2f, 1.0f),  glm::vec3(1.0f, 0.4f, 0.05f), glm::vec3(0.9f)};
+  return kColors[place % kColors.size()];
+}
+
+std::size_t channelNumber(const ChannelStyle& channel, std::size_t count) {
+  const char* const end = channel.name.data() + channel.name.size();
+  std::size_t number = 0;
+  const auto [stopped, error] = std::from_chars(channel.name.data(), end, number);
+  if (error != std::errc() || stopped != end || number >= count)
+    fail(ErrorKind::Input, "there are {} channels, numbered from 0, and {} is none of them", count, Parameter("channel", channel.name));
+  return number;
+}
+
+bool doEmit(const std::vector<ChannelStyle>& channels) {
+  if (channels.size() > kMostChannels)
+    fail(ErrorKind::Usage, "a volume has at most {} channels, and {} are given: leave some out", kMostChannels, channels.size());
+  const auto emitting = std::size_t(std::ranges::count_if(channels, &ChannelStyle::emits));
+  if (emitting != 0 && emitting != channels.size())
+    fail(ErrorKind::Usage, "{} has channels with and without emission: draw those with emission by {}, from the same file",
+         Parameter("channel"), Parameter("add"));
+  return emitting != 0;
+}
+
+void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std::vector<ScalarBricks> values) {
+  FV_CHECK_EQ(channels.size(), values.size());
+  const bool emits = doEmit(channels);
+  std::vector<Part> parts;
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    parts.push_back({&values[i], channels[i].window ? *channels[i].window : automaticWindow(values[i]),
+                     channels[i].color.value_or(automaticChannelColor(i)), channels[i].weight});
+  ScalarBricks sums(volume.dimensions, values.front().corner());
+  for (const ScalarBricks& channel : values)
+    for (std::size_t brick = 0; brick < channel.bricks().size(); ++brick) sums.makeBrick(channel.cell(brick));
+  AlbedoGrid colors{.name = "channels", .values = {}, .isMade = true};
+  colors.values.fill(sums);
+  tbb::parallel_for(std::size_t(0), sums.bricks().size(), [&](std::size_t brick) {
+    std::vector<const ScalarBricks::Brick*> of;
+    for (const Part& part : parts) of.push_back(part.values->brickAt(sums.cell(brick)));
+    for (std::size_t voxel = 0; voxel < sums.bricks()[brick].size(); ++voxel) {
+      float sum = 0.0f;
+      glm::vec3 color(0.0f);
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const float amount = of[i] == nullptr ? 0.0f : parts[i].at((*of[i])[voxel]);
+        sum += amount;
+        color += amount * parts[i].color;
+      }
+      sums.bricks()[brick][voxel] = sum > 0.0f ? sum : kInactiveVoxel;
+      for (int c = 0; c < 3; ++c) colors.values[std::size_t(c)].bricks()[brick][voxel] = sum > 0.0f ? color[c] / sum : kInactiveVoxel;
+    }
+  });
+  volume.albedo = std::move(colors);
+  volume.isFog = true;
+  volume.scalars = emits ? ScalarBricks(volume.dimensions, sums.corner()) : sums;
+  summariseValues(volume);
+  if (!emits) return;
+  volume.temperature = TemperatureGrid{.name = "channels", .isRadiance = true, .values = std::move(sums)};
+  summariseValues(*volume.temperature);
+  coverBricks(volume, volume.temperature->values);
+}
+
+}  // namespace freevoxels

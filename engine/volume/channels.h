@@ -1,0 +1,43 @@
+#pragma once
+// Volumes of several channels: scalars that were measured at the same voxels, as by a microscope with several dyes. Each has a colour
+// and a window of its values, and they are drawn in one march: extinctions add up, and so does the light that is scattered or sent out.
+
+#include <array>
+#include <glm/glm.hpp>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// Channels of a volume at most.
+inline constexpr std::size_t kMostChannels = 16;
+
+/// How a channel is drawn. Its intensity is 0 up to the beginning of the window, 1 from its end on, and linear between.
+struct ChannelStyle {
+  std::string name;                            ///< of the grid, or its number from 0 on
+  std::optional<glm::vec3> color;              ///< linear Rec.709, 0..1; else that of automaticChannelColor()
+  float weight = 1.0f;                         ///< of the density or the light of intensity 1, 0 or more
+  std::optional<std::array<float, 2>> window;  ///< else from the least value to that which one voxel in a thousand exceeds
+  bool emits = false;                          ///< whether it sends out light and lets all other light through
+
+  bool operator==(const ChannelStyle&) const = default;
+};
+
+/// The colour of a channel by its place in the list: colours of dyes, the sums of which are told apart.
+glm::vec3 automaticChannelColor(std::size_t place);
+
+/// Fills a volume, whose box and place are known, from its channels: with densities Σ w s and the albedo Σ w s c / Σ w s of intensities s,
+/// weights w and colours c; or with light of the same sums (TemperatureGrid::isRadiance) where they emit. `values` has the scalars of
+/// each channel for the volume's box. Either all of the channels emit, or none.
+void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std::vector<ScalarBricks> values);
+
+/// The number that the name of a channel is, where channels have numbers alone. Fails with ErrorKind::Input if it is none of `count`.
+std::size_t channelNumber(const ChannelStyle& channel, std::size_t count);
+
+/// Whether the channels emit. Fails with ErrorKind::Usage for some that do and others that do not, and for more than kMostChannels.
+bool doEmit(const std::vector<ChannelStyle>& channels);
+
+}  // namespace freevoxels

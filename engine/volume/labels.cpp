@@ -1,0 +1,139 @@
+#include "engine/volume/labels.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+#include "engine/volume/classification.h"
+
+namespace freevoxels {
+
+namespace {
+
+/// The hue is 0 to 1, as are the others.
+glm::vec3 colorOfHue(float hue, float saturation, float value) {
+  const glm::vec3 wheel = glm::abs(glm::fract(glm::vec3(hue) + glm::vec3(0.0f, 2.0f / 3.0f, 1.0f / 3.0f)) * 6.0f - 3.0f) - 1.0f;
+  return value * glm::mix(glm::vec3(1.0f), glm::clamp(wheel, 0.0f, 1.0f), saturation);
+}
+
+/// The density of a voxel with an opacity, relative to that of kSolidOpticalDepth.
+float densityOf(float opacity) {
+  const double depth = -std::log1p(-std::min(double(opacity), kMaximumOpacity));
+  return float(std::min(depth / kSolidOpticalDepth, 1.0));
+}
+
+/// A label as it is drawn: not at all with density kInactiveVoxel.
+struct Look {
+  float density = kInactiveVoxel;
+  glm::vec3 color{kInactiveVoxel};
+};
+
+Look lookOf(const Labels& labels, std::int64_t label) {
+  if (!labels.shows(label)) return {};
+  const auto style = labels.styles.find(label);
+  if (style == labels.styles.end()) return {densityOf(1.0f), automaticLabelColor(label)};
+  if (!(style->second.opacity > 0.0f)) return {};
+  return {densityOf(style->second.opacity), style->second.color ? *style->second.color : automaticLabelColor(label)};
+}
+
+/// The voxels of a brick and those around it, of which the former's densities are means: the surfaces of solids would have steps otherwise.
+class Neighbourhood {
+ public:
+  Neighbourhood(const ScalarBricks& values, glm::ivec3 firstVoxel, const Labels& labels) {
+    std::int64_t last = 0;  // which most neighbours share
+    Look look;
+    std::size_t index = 0;
+    for (glm::ivec3 v(-kReach); v.z < kEnd; ++v.z)
+      for (v.y = -kReach; v.y < kEnd; ++v.y)
+        for (v.x = -kReach; v.x < kEnd; ++v.x, ++index) {
+          const glm::ivec3 voxel = firstVoxel + v;
+          const bool isInside =
+              glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, values.dimensions()));
+          const float scalar = isInside ? values.at(voxel) : kInactiveVoxel;
+          const std::int64_t label = scalar == kInactiveVoxel ? 0 : labelOf(scalar);
+          if (label != std::exchange(last, label)) look = lookOf(labels, label);
+          looks_[index] = look;
+          isEmpty_ &= look.density == kInactiveVoxel;
+        }
+  }
+
+  /// Of the voxel at a place in the brick: the mean density, with binomial weights, and the colour of the nearest voxel with a label. Parts
+  /// that are thinner than a voxel of the mean keep half of their density.
+  Look at(glm::ivec3 place) const {
+    constexpr std::array<float, 2 * kReach + 1> kWeights{1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
+    if (isEmpty_) return {};
+    const Look& own = lookAt(place);
+    float mean = 0.0f;
+    int nearest = std::numeric_limits<int>::max();
+    Look result;
+    for (glm::ivec3 d(-kReach); d.z <= kReach; ++d.z)
+      for (d.y = -kReach; d.y <= kReach; ++d.y)
+        for (d.x = -kReach; d.x <= kReach; ++d.x) {
+          const Look& other = lookAt(place + d);
+          if (other.density == kInactiveVoxel) continue;
+          mean += kWeights[std::size_t(d.x + kReach)] * kWeights[std::size_t(d.y + kReach)] * kWeights[std::size_t(d.z + kReach)] *
+                  other.density;
+          if (const int distance = d.x * d.x + d.y * d.y + d.z * d.z; distance < nearest) nearest = distance, result.color = other.color;
+        }
+    if (mean > 0.0f) result.density = std::max(mean, 0.5f * own.density);
+    return result;
+  }
+
+ private:
+  static constexpr int kReach = 2, kEnd = ScalarBricks::kEdge + kReach, kEdge = ScalarBricks::kEdge + 2 * kReach;
+  const Look& lookAt(glm::ivec3 place) const {
+    const glm::ivec3 at = place + kReach;
+    return looks_[std::size_t(at.x + kEdge * (at.y + kEdge * at.z))];
+  }
+
+  std::array<Look, std::size_t(kEdge) * kEdge * kEdge> looks_;
+  bool isEmpty_ = true;
+};
+
+/// Makes the brick of a cell and those beside it, as far as there are cells.
+void makeBricksAround(ScalarBricks& bricks, glm::ivec3 cell) {
+  const glm::ivec3 first = glm::max(cell - 1, 0), last = glm::min(cell + 1, bricks.cells() - 1);
+  for (glm::ivec3 c = first; c.z <= last.z; ++c.z)
+    for (c.y = first.y; c.y <= last.y; ++c.y)
+      for (c.x = first.x; c.x <= last.x; ++c.x) bricks.makeBrick(c);
+}
+
+}  // namespace
+
+glm::vec3 automaticLabelColor(std::int64_t label) {
+  constexpr double kGoldenRatio = 0.6180339887498949;  // its multiples are spread most evenly
+  constexpr std::int64_t kHues = 7;                    // after which the saturation changes
+  const double turns = double(label) * kGoldenRatio;
+  const bool isPale = (label / kHues) % 2 != 0;
+  return colorOfHue(float(turns - std::floor(turns)), isPale ? 0.45f : 0.8f, 0.85f);
+}
+
+std::int64_t labelOf(float scalar) {
+  return std::int64_t(std::nearbyint(std::clamp(double(scalar), -9e15, 9e15)));
+}
+
+void showLabels(Volume& volume, const Labels& labels) {
+  const ScalarBricks values = std::exchange(volume.scalars, {});
+  ScalarBricks densities(volume.dimensions, values.corner());
+  for (std::size_t brick = 0; brick < values.bricks().size(); ++brick) makeBricksAround(densities, values.cell(brick));
+  AlbedoGrid colors{.name = "labels", .values = {}, .isMade = true};
+  colors.values.fill(densities);
+  tbb::parallel_for(std::size_t(0), densities.bricks().size(), [&](std::size_t brick) {
+    const Neighbourhood there(values, densities.firstVoxel(brick), labels);
+    for (std::size_t i = 0; i < densities.bricks()[brick].size(); ++i) {
+      const Look look = there.at(ScalarBricks::placeInBrick(i));
+      densities.bricks()[brick][i] = look.density;
+      for (int c = 0; c < 3; ++c) colors.values[std::size_t(c)].bricks()[brick][i] = look.color[c];
+    }
+  });
+  volume.scalars = std::move(densities);
+  volume.albedo = std::move(colors);
+  volume.isSolid = true;
+  summariseValues(volume);
+}
+
+}  // namespace freevoxels
