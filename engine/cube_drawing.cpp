@@ -123,7 +123,7 @@ std::shared_ptr<const FrameTargets> CubeDrawing::draw(const Camera& camera, cons
   const ScatteringSolver* const scattered = state.solveScattering(wanted, progress);
   const State::LightGroups groups = state.groupLights(wanted);
   const auto drawGroup = [&](std::size_t group, const FrameTargets& targets) {
-    const State::Frame frame = state.frameOfGroup(camera, groups, group, scattered, progress);
+    State::Frame frame = state.frameOfGroup(camera, groups, group, scattered, progress);
     state.march(frame);
     state.resolve(frame, targets);
   };

@@ -60,7 +60,7 @@ struct CubeDrawing::State {
   std::uint64_t mostBricks();
   std::uint64_t leastBytes(const Camera& camera, const FrameSettings& wanted);
   Error withNeed(const Error& error, const Camera& camera, const FrameSettings& wanted);
-  void march(const Frame& frame);
+  void march(Frame& frame);
   shader::GatherFrame latticeOf(const Camera& camera, const FrameSettings& settings);
   shader::GatherFrame frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level) const;
   /// What is drawn at a time.

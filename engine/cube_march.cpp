@@ -82,6 +82,7 @@ shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLe
   result.seenHigh = frame.lattice.seenHigh;
   result.firstSeen = frame.lattice.firstSeen;
   result.seenExtent = frame.lattice.seenExtent;
+  result.holdout = frame.lattice.holdout;
   for (int axis = 0; axis < 3; ++axis)
     for (int sign = 0; sign < 2; ++sign) result.axes[axis].slices[sign][0] = frame.lattice.axes[axis].slices[sign][level];
   return result;
@@ -176,10 +177,11 @@ void CubeDrawing::State::resolve(const Frame& frame, const FrameTargets& targets
 }
 
 /// Marches the rows of the frame, whose sums are then in `gather`.
-void CubeDrawing::State::march(const Frame& frame) {
+void CubeDrawing::State::march(Frame& frame) {
   const std::size_t levelCount = std::size_t(frame.lattice.coarsest) + 1;
   cubesRead.resize(std::max(cubesRead.size(), levelCount), 0);
   if (!gather) gather.emplace(device);
+  frame.lattice.holdout = gather->holdOut(frame.settings.holdout);
   {
     Commands commands(device);
     gather->recordClear(commands, frame.lattice);

@@ -11,11 +11,11 @@
 
 namespace freevoxels {
 
-void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const Progress& progress) {
+void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, bool holdout, const Progress& progress) {
   try {
     if (!volume_) volume_.emplace(scene_.device, scene_.hostVolume, scene_.classification, scene_.built, scene_.frameTimes);
     volume_->prepare(shading);
-    GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0);
+    GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0, holdout);
     Commands commands(scene_.device);
     volume_->record(commands, shading);
     if (!commands.empty()) scene_.submit(commands, progress);
@@ -55,8 +55,9 @@ GatherDrawing::Frame GatherDrawing::prepare(const Camera& camera, const FrameSet
                  .scattered = lighting != nullptr ? scene_.scattered() : nullptr,
                  .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
                  .keptQuadBytes = planKeptQuadBytes(scene_.device)},
-                progress);
+                settings.holdout != nullptr, progress);
   if (!pass_) pass_.emplace(scene_.device);
+  frame.lattice.holdout = pass_->holdOut(settings.holdout);
   volume_->describe(frame.lattice);
   return frame;
 }

@@ -79,7 +79,7 @@ void MergedDrawing::prepareLights(Frame& frame, std::span<const Lighting> lighti
 }
 
 /// Appends the volume's constants, and its rays on a lattice of its own.
-void MergedDrawing::prepareRays(Medium& medium, const Camera& camera, Frame& frame, const Progress& progress) const {
+void MergedDrawing::prepareRays(Medium& medium, const Camera& camera, Frame& frame, const Progress& progress) {
   DeviceScene& scene = medium.scene;
   scene.frameTimes.clear();
   const auto constantsNow = [&] { return makeFrameConstants(device_, scene.built.volume, scene.tableSettings, camera, frame.settings); };
@@ -89,6 +89,7 @@ void MergedDrawing::prepareRays(Medium& medium, const Camera& camera, Frame& fra
     constants = constantsNow();  // with the blocks' addresses
   }
   frame.rays.push_back(makeGatherFrame(scene.built.volume, camera, frame.settings, constants.detail, constants.endTransmittance));
+  frame.rays.back().holdout = pass_.pass().holdOut(frame.settings.holdout);
   constants.detail.finest = frame.rays.back().finest;
   frame.constants.push_back(std::move(constants));
 }

@@ -43,7 +43,7 @@ class MergedDrawing {
   };
   Frame prepare(const Camera& camera, const FrameSettings& settings, const Progress& progress);
   void solveScattering(const Lighting& lighting, const Progress& progress);
-  void prepareRays(Medium& medium, const Camera& camera, Frame& frame, const Progress& progress) const;
+  void prepareRays(Medium& medium, const Camera& camera, Frame& frame, const Progress& progress);
   void prepareLights(Frame& frame, std::span<const Lighting> lightings, const Progress& progress);
   std::vector<ShadowingVolume> othersThan(const Medium& medium) const;
   void prepareVolume(std::size_t i, const Lighting* lighting, Frame& frame, const Progress& progress);

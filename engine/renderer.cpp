@@ -36,6 +36,13 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
        Parameter("memory-limit"), whyNotCubes);
 }
 
+void checkFrame(const Camera& camera, const FrameSettings& settings) {
+  checkCamera(camera);
+  if (!settings.holdout) return;
+  if (!settings.gathers()) failHoldoutOfSplats();
+  checkHoldoutSize(*settings.holdout, settings.size);
+}
+
 }  // namespace
 
 Renderer::Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
@@ -136,8 +143,8 @@ auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& prog
 }
 
 Image Renderer::render(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
+  checkFrame(camera, settings);
   if (merged_) return downloadImage(device_, *merged_->draw(camera, settings, progress));
-  checkCamera(camera);
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
     const std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, fitting, progress);
@@ -158,8 +165,8 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
 
 std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                              const Progress& progress) {
+  checkFrame(camera, settings);
   if (merged_) return merged_->draw(camera, settings, progress);
-  checkCamera(camera);
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
     std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, fitting, progress);
@@ -174,8 +181,8 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   FV_CHECK_EQ(wanted.isSorted(), false);
   FV_CHECK_LT(part.index, part.count);
   FV_CHECK_LE(part.count, kShares);
+  checkFrame(camera, wanted);
   if (merged_) return merged_->shares(camera, wanted, part, progress);
-  checkCamera(camera);
   FrameSettings settings = wanted;
   if (!settings.gathers()) settings.splats().cullThreshold = 0.0f;  // what hides a splat may be another part's
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) { return state.shares(camera, fitting, part, progress); };

@@ -22,7 +22,7 @@ int emptyGroups(Slices level, Ray ray, int slice) {
                                        cell.z * level.skipStrides.z).x);
 }
 
-// The slices `slices.x` to `slices.y` - 1 that the ray meets inside the volume and in front of the eye.
+// The slices `slices.x` to `slices.y` - 1 that the ray meets inside the volume, in front of the eye and of the ray's end.
 ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
   vec2 range = vec2(slices) - vec2(0.0, 1.0);
   [[unroll]] for (int side = 0; side < 2; ++side) {
@@ -34,6 +34,12 @@ ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
     range.x = max(range.x, ray.eye - 1.0);
   else
     range.y = min(range.y, ray.eye + 1.0);
+  if (kHoldout) {
+    if (ray.direction > 0.0)
+      range.y = min(range.y, ray.eye + ray.reach + 1.0);
+    else
+      range.x = max(range.x, ray.eye - ray.reach - 1.0);
+  }
   // Clamped before the conversion to int, whose range rays nearly parallel to a side exceed.
   range = clamp(range, vec2(slices) - vec2(1.0), vec2(slices) + vec2(1.0));
   return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
@@ -84,7 +90,7 @@ void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, in
 
 // Adds a slice of blocks, or the stretch up to it.
 void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
-  if (kSampled || kMerged)
+  if (kSampled || kMerged || kHoldout)
     addBlockStretch(sums, last, level, ray, slice, within);
   else
     addSlice(sums, level, ray, slice);
@@ -112,7 +118,7 @@ void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransm
   int left = slices.y - slices.x + 1;
   if (left <= 0) return;
   const int begin = slice;
-  const bool stretches = scalars || kSampled || kMerged;
+  const bool stretches = scalars || kSampled || kMerged || kHoldout;
   if (stretches) ++left;
   SliceValues last = emptySliceValues();
   if (kCube) {
@@ -180,7 +186,14 @@ struct SampleRay {
   vec2 slope;    // on the sides, for each slice
   vec2 middle;   // position on the sides, on the volume's middle plane
   float eye;     // start of the ray, in slices
+  float end;     // with kHoldout: distance from the eye plane at which the ray ends, world units
 };
+
+// The distance from the eye plane at which the rays of a sample's pixel end.
+float holdoutAt(ivec2 index) {
+  const ivec2 pixel = clamp((index - kLatticeMargin) / max(frame.raysOfPixel, 1), ivec2(0), frame.size - 1);
+  return Holdout(frame.holdout).distances[pixel.x + pixel.y * frame.size.x];
+}
 
 // Adds a level of the volume to the sums, and what it adds to the distance to `distanceSum`.
 void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, int levelIndex, bool scalars) {
@@ -197,6 +210,7 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   ray.toEye = -normalize(sampleRay.world);
   ray.edge = edge;
   ray.perSlice = edge / abs(sampleRay.along);
+  ray.reach = kHoldout ? min(sampleRay.end / ray.perSlice, 1e9) : 0.0;
   const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[sampleRay.along > 0.0 ? 1 : 0][levelIndex]);
   sums.distance = 0.0;
   if (sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, scalars);
@@ -223,6 +237,7 @@ void main() {
   sampleRay.slope = vec2(dot(frame.axes[kAxis].slope[0], position), dot(frame.axes[kAxis].slope[1], position)) / sampleRay.along;
   sampleRay.middle = vec2(dot(frame.axes[kAxis].middle[0], position), dot(frame.axes[kAxis].middle[1], position)) / sampleRay.along;
   sampleRay.eye = dot(frame.axes[kAxis].eye, position);
+  sampleRay.end = kHoldout ? holdoutAt(index) : 0.0;
   Sums sums = Sums(vec3(0.0), 0.0, 1.0, vec3(1.0));
   float distanceSum = 0.0;  // sum of e times world distance from the eye plane
   const int sampleIndex = index.x + index.y * frame.samples.x;

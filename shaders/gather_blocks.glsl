@@ -85,19 +85,34 @@ vec4 mediumBetween(Slices level, Ray ray, int first, int second) {
   return sum;
 }
 
-// Beside other volumes, whose footprints no stencil restores: a stretch in two halves, whose means are those of the ends and the middle.
+// The medium of half a stretch from `first` to `second`, as far as that is in front of the ray's end. With kHoldout the eye is taken to be
+// in front of the half.
+vec4 meanOfHalf(vec4 first, vec4 second, vec3 part) { return kHoldout ? mix(first, second, part.x) : 0.5 * (first + second); }
+
+// Where no stencil restores footprints, beside other volumes and in front of a holdout: a stretch in two halves, whose means are those of
+// the ends and the middle.
 void addHalves(inout Sums sums, SliceValues last, SliceValues found, Slices level, Ray ray, int slice, float ahead, SegmentLight lit) {
   const vec4 middle = mediumBetween(level, ray, slice - int(ray.direction), slice);
+  const vec3 near = halfStretch(ray, ahead - 0.5), far = halfStretch(ray, ahead);
+  const vec4 nearMedium = meanOfHalf(last.medium, middle, near), farMedium = meanOfHalf(middle, found.medium, far);
   SegmentLight farLit = lit;
   lit.change *= 0.5;
   farLit.begin += lit.change;
   farLit.change = lit.change;
+  if (kHoldout) {
+    lit.change *= 2.0 * near.x;
+    farLit.change *= 2.0 * far.x;
+  }
   if (kEmits) {
     lit.emission = last.emission;
     farLit.emission = found.emission;
+    if (!kMerged) {  // where slabs do not dim it
+      lit.emission *= meanTransmittance(ray.layer * near.x * nearMedium.a);
+      farLit.emission *= meanTransmittance(ray.layer * far.x * farMedium.a);
+    }
   }
-  addSegment(sums, 0.5 * (last.medium + middle), ray.layer * clamp(ahead - 0.5, 0.0, 0.5), ahead - 0.75, 0.25, lit, ray);
-  addSegment(sums, 0.5 * (middle + found.medium), ray.layer * clamp(ahead, 0.0, 0.5), ahead - 0.25, 0.25, farLit, ray);
+  addSegment(sums, nearMedium, ray.layer * near.x, near.y, near.z, lit, ray);
+  addSegment(sums, farMedium, ray.layer * far.x, far.y, far.z, farLit, ray);
 }
 
 // For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
@@ -107,7 +122,7 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
   const int isOwn = inCube;
   const vec4 medium = 0.5 * (last.medium + found.medium);
   if (kCube) {
-    if (isOwn == 0 || (medium == vec4(0.0) && (!kEmits || last.emission + found.emission == vec3(0.0)))) {
+    if (isOwn == 0 || (!kHoldout && medium == vec4(0.0) && (!kEmits || last.emission + found.emission == vec3(0.0)))) {
       last = found;
       return;
     }
@@ -132,7 +147,7 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray 
       lightFrom(lit, outsideOf(level, ray, float(slice) - 0.5 * ray.direction, -gradient));
     }
   }
-  if (kMerged) {
+  if (kMerged || kHoldout) {
     addHalves(sums, last, found, level, ray, slice, ahead, lit);
   } else {
     const float stretch = ray.layer * clamp(ahead, 0.0, 1.0);

@@ -204,6 +204,8 @@ struct GatherFrame {
   ivec2 firstSeen, seenExtent;
   ivec2 ownCells;  // first and end of the rows of cells (gather_adaptive.glsl) whose samples are refined, relative to the first one seen
   ivec2 firstPixel, pixelExtent;  // the rectangle of pixels outside of which the image is empty
+  int raysOfPixel;                // with a holdout: along each axis, the samples of a pixel, of which alone it is made; otherwise 0
+  uvec2 holdout;                  // with a holdout: device address of the distance from the eye plane at which the rays of each pixel end
 };
 
 // shade_blocks.comp

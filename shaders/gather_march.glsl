@@ -22,6 +22,7 @@ layout(constant_id = 7) const bool kFlux = false;     // whether that depends on
 layout(constant_id = 8) const bool kTinted = false;   // whether the extinction of light differs between colours, or from that of the eye
 layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are lit at samples emit light, too
 layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
+layout(constant_id = 11) const bool kHoldout = false;  // whether rays end at the depths of a holdout
 
 // Loops that some lanes of a vector leave before others have the form `do { if (goes on) {...} } while (goes on)`, where `goes on` compares
 // integers. Lavapipe executes the bodies of other loops once more, masked; and what is assigned in a loop outside of the `if` it may compute
@@ -44,6 +45,7 @@ layout(binding = 10) uniform utextureBuffer lightQuads1;
 layout(binding = 11) uniform utextureBuffer lightQuads2;
 layout(binding = 12) uniform utextureBuffer lightQuads3;
 layout(binding = 13) uniform textureBuffer scatteredTexels;  // ScatteredGrid, with kScattered
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Holdout { float distances[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
@@ -64,6 +66,7 @@ struct Ray {
   vec3 toEye;           // unit vector in world space
   float edge;           // edge of a block in voxels
   float perSlice;       // distance from the eye plane that the ray moves in a slice of the level, world units
+  float reach;          // with kHoldout: slices of the level from the eye to the end of the ray
 };
 
 // The geometry of a level, read once for each level.
@@ -120,6 +123,15 @@ SliceValues emptySliceValues() {
   nothing.hasGradient = nothing.hasLight = false;
   nothing.depths = vec4(0.0);
   return nothing;
+}
+
+// The half of a stretch between two slices that ends `end` slices from the eye: the length of it that is in front of the eye and of the
+// ray's end (x), the distance of the middle of that from the eye (y), and half its length (z), in slices.
+vec3 halfStretch(Ray ray, float end) {
+  const float length = clamp(end, 0.0, 0.5);
+  if (!kHoldout) return vec3(length, end - 0.25, 0.25);
+  const float seen = clamp(ray.reach - (end - length), 0.0, length);
+  return vec3(seen, end - length + 0.5 * seen, 0.5 * seen);
 }
 
 // On lavapipe, texels are faster than addresses.

@@ -1,6 +1,7 @@
 #version 460
 // Makes pixels of the lattice's sums along one axis of the image: first along x, to rows of the lattice with the image's width, then along
-// y into the image. A pixel is the mean over its width of the Catmull-Rom interpolation, by Simpson's rule.
+// y into the image. A pixel is the mean over its width of the Catmull-Rom interpolation, by Simpson's rule; with a holdout, whose edges
+// lie between pixels, the mean of its own samples.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "catmull_rom.glsl"
@@ -30,6 +31,10 @@ void resolvePixel(ivec2 pixel, vec4 colorEnergy, float distance) {
 
 // Sets the weights of kTaps samples, and returns the index of the first one.
 int weightsOf(int pixel, out float weights[kTaps]) {
+  if (frame.raysOfPixel > 0) {
+    [[unroll]] for (int i = 0; i < kTaps; ++i) weights[i] = i < frame.raysOfPixel ? 1.0 / float(frame.raysOfPixel) : 0.0;
+    return kLatticeMargin + pixel * frame.raysOfPixel;
+  }
   const float halfPixel = 0.5 / frame.pitch;
   const float before = floor(float(pixel) / frame.pitch);  // samples between the first pixel and this one
   const float middle = (float(pixel) - before * frame.pitch) / frame.pitch, lowest = floor(middle - halfPixel);
@@ -61,7 +66,7 @@ void main() {
     const int place = start + clamp(first + i, frame.firstSeen[axis], last) * row;
     const vec4 texel = texelFetch(colorEnergy, place);
     color += weights[i] * texel;
-    if (kWithDistance) addSample(mean, weights[i], texel.a, texelFetch(distances, place).x);
+    if (kWithDistance && (frame.raysOfPixel == 0 || weights[i] > 0.0)) addSample(mean, weights[i], texel.a, texelFetch(distances, place).x);
   }
   const float distance = distancesOf(mean, color.a);
   if (kAlongY) {

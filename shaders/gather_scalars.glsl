@@ -177,7 +177,16 @@ Stretch scalarStretch(SliceValues last, Slices level, Ray ray, int slice, bool w
   if (!within) found.coverage = 0.0;
   SliceValues first, second;
   endsOf(first, second, last, found);
-  const float scalar = middle.y > 0.0 ? middle.x : first.scalar;
+  float scalar = middle.y > 0.0 ? middle.x : first.scalar;
+  if (kHoldout) {  // the ends of what is in front of the ray's end
+    const float seen = ray.reach - ((float(slice) - ray.eye) * ray.direction - 1.0);
+    const float between = scalar;
+    scalar = mix(first.scalar, between, clamp(2.0 * seen, 0.0, 1.0));
+    if (seen < 1.0) {
+      second.scalar = mix(between, second.scalar, clamp(2.0 * seen - 1.0, 0.0, 1.0));
+      tableAt(second.scalar, second.integral, second.medium);
+    }
+  }
   vec4 integral, medium;
   tableAt(scalar, integral, medium);
   stretch.near = meanBetween(first.scalar, first.integral, first.medium, scalar, integral, medium);
@@ -200,14 +209,22 @@ void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, 
   }
   // Coverage is linear in both halves, of which the parts in front of the eye count.
   const float ahead = (float(slice) - ray.eye) * ray.direction;
-  const float nearPart = clamp(ahead - 0.5, 0.0, 0.5), farPart = clamp(ahead, 0.0, 0.5);
-  const float nearLayer = ray.layer * mix(stretch.coverage, last.coverage, nearPart);
-  const float farLayer = ray.layer * mix(found.coverage, stretch.coverage, farPart);
+  const vec3 nearPart = halfStretch(ray, ahead - 0.5), farPart = halfStretch(ray, ahead);
+  // How far the middles of these parts are from the ends of the halves, in halves.
+  const float nearMiddle = kHoldout ? 2.0 * (ahead - 0.5 - nearPart.y) : nearPart.x, farMiddle = kHoldout ? 2.0 * (ahead - farPart.y) : farPart.x;
+  const float nearLayer = ray.layer * mix(stretch.coverage, last.coverage, nearMiddle);
+  const float farLayer = ray.layer * mix(found.coverage, stretch.coverage, farMiddle);
   const float shown = sums.transmittance * (nearLayer * near.a + farLayer * far.a);
   SegmentLight nearLit, farLit;
-  if (kSampled) lightStretch(nearLit, farLit, last, found, near.a, far.a, shown, level, ray, slice);
-  addSegment(sums, near, nearLayer * nearPart, ahead - 0.75, 0.25, nearLit, ray);
-  addSegment(sums, far, farLayer * farPart, ahead - 0.25, 0.25, farLit, ray);
+  if (kSampled) {
+    lightStretch(nearLit, farLit, last, found, near.a, far.a, shown, level, ray, slice);
+    if (kHoldout) {
+      nearLit.change *= 2.0 * nearPart.x;
+      farLit.change *= 2.0 * farPart.x;
+    }
+  }
+  addSegment(sums, near, nearLayer * nearPart.x, nearPart.y, nearPart.z, nearLit, ray);
+  addSegment(sums, far, farLayer * farPart.x, farPart.y, farPart.z, farLit, ray);
   last = found;
 }
 

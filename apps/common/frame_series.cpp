@@ -28,7 +28,8 @@ bool isTransparent(const Renderer& renderer) {
 
 std::string whyNothingIsSeen(bool isTransparent) {
   if (isTransparent) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
-  return "the camera looks past the volume, or what it sees is transparent; leave out --camera-position and --look-at to frame it";
+  return "the camera looks past the volume, or what it sees is transparent or behind --holdout; leave out --camera-position and --look-at "
+         "to frame it";
 }
 
 bool showsNothing(const Image& image) {
@@ -153,7 +154,7 @@ FrameSeries::VolumeView FrameSeries::beginVolume(const std::shared_ptr<const Vol
     announce(scene, jobs.size());
   else
     logWarnings(*scene.volume, !scene.classification.transferFunction);
-  agree(scene, *source);
+  agree(scene, *source, jobs.front());
   return view;
 }
 
@@ -168,7 +169,7 @@ void FrameSeries::announce(const Scene& view, std::size_t frames) {
 }
 
 /// Fails where the processes of the group would not draw parts of one image.
-void FrameSeries::agree(const Scene& view, const VolumeSource& source) {
+void FrameSeries::agree(const Scene& view, const VolumeSource& source, const FrameJob& job) {
   if (options_.drawsShares()) {
     const bool hasEnvironment = view.lighting && view.lighting->environment;
     report_.contentHash.clear();
@@ -179,9 +180,10 @@ void FrameSeries::agree(const Scene& view, const VolumeSource& source) {
     if (const auto* const baked = dynamic_cast<const BakedSource*>(&source))
       report_.contentHash += fmt::format("-{:016x}", baked->file().header().hash);
   }
+  if (options_.drawsShares() && job.holdout) report_.contentHash += "-" + contentHash(*holdoutOf(job));
   if (options_.group == nullptr) return;
   options_.group->agree("another version of the program", programVersion());
-  options_.group->agree("another volume, transfer function or environment", report_.contentHash);
+  options_.group->agree("another volume, transfer function, environment or holdout", report_.contentHash);
   OptionList options;
   for (const auto& [name, value] : report_.options)
     if (!name.empty()) options.emplace_back(name, value);  // the volume's own name may differ from machine to machine
@@ -206,10 +208,12 @@ void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::sp
       continue;
     }
     scene.camera = view.cameras[i];
+    FrameSettings settings = view.settings;
+    settings.holdout = holdoutOf(jobs[i]);
     if (options_.drawsShares())
-      drawShares(renderer, scene, view.settings, jobs[i]);
+      drawShares(renderer, scene, settings, jobs[i]);
     else
-      complete(renderFrame(renderer, device_, options_.scene.description.of(jobs[i].input), scene, view.settings,
+      complete(renderFrame(renderer, device_, options_.scene.description.of(jobs[i].input), scene, settings,
                            options_.scene.description.output.aovs, progress_.progress()),
                isTransparent(renderer), scene, jobs[i]);
     addTimes(report_.stages, renderer.frameTimings());
@@ -217,6 +221,16 @@ void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::sp
   finishAddingUp();
   report(renderer, *scene.volume);
   for (const FrameJob* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
+}
+
+/// What ends the rays of a frame; null if nothing does. Neighbouring frames of one image read it once.
+const std::shared_ptr<const Holdout>& FrameSeries::holdoutOf(const FrameJob& job) {
+  if (job.holdout == heldOutBy_) return holdout_;
+  CameraDescription camera = options_.scene.description.camera;
+  camera.holdout = job.holdout;
+  holdout_ = camera.readHoldout();
+  heldOutBy_ = job.holdout;
+  return holdout_;
 }
 
 /// Draws this process's shares, and hands on or writes their sums or the image of them.

@@ -55,10 +55,11 @@ class FrameSeries {
   bool drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs);
   void drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs);
   void drawShares(Renderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job);
+  const std::shared_ptr<const Holdout>& holdoutOf(const FrameJob& job);
 
   VolumeView beginVolume(const std::shared_ptr<const VolumeSource>& source, std::span<const FrameJob> jobs);
   void announce(const Scene& view, std::size_t frames);
-  void agree(const Scene& view, const VolumeSource& source);
+  void agree(const Scene& view, const VolumeSource& source, const FrameJob& job);
   void agreeOnCubes(Renderer& renderer, const FrameSettings& settings);
 
   void finishAddingUp();
@@ -72,6 +73,8 @@ class FrameSeries {
   SeriesProgress progress_;
   std::optional<FilmScenes> film_;  ///< of the frames of draw()
   FrameWriter writer_;
+  std::optional<std::string> heldOutBy_;    ///< FrameJob::holdout of the last frame
+  std::shared_ptr<const Holdout> holdout_;  ///< what was read of it
   AddingUp addingUp_;
   std::vector<const FrameJob*> drawnElsewhere_;  ///< frames of other processes of the group
   std::vector<const FrameJob*> waiting_;         ///< empty frames before any frame that says how they are seen

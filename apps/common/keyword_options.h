@@ -1,6 +1,7 @@
 #pragma once
 // Scenes as JSON values: those of the library, and the keyword arguments of Python.
 
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
@@ -28,6 +29,7 @@ struct KeywordOptions {
   static Sections sections(bool ofFile, bool choosesDevice);
 
   SceneDescription scene;
+  std::shared_ptr<const Holdout> holdout;  ///< in memory, in place of the file of scene.camera; null if there is none
   DeviceOptions device;
   std::vector<std::string> warnings;  ///< what the user should know of the scene file
 };

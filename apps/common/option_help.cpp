@@ -74,7 +74,11 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"fov", fmt::format("Vertical field of view [{}]", Camera{}.verticalFov)},
     {"orthographic", "Orthographic projection; the image is HEIGHT world units high [perspective]"},
     {"size",
-     fmt::format("Image size in pixels, or one number for a square [{}x{}]", CameraDescription{}.size.x, CameraDescription{}.size.y)}};
+     fmt::format("Image size in pixels, or one number for a square [{}x{}]", CameraDescription{}.size.x, CameraDescription{}.size.y)},
+    {"holdout",
+     "Image of what other surfaces this camera sees, at whose depths rays end: channel Z, the distance along the viewing axis in world "
+     "units, "
+     "of an image of this size; a run of # becomes the number of the frame [nothing is in front]"}};
 
 const std::vector<OptionHelp> kLightHelp{
     {"unlit", "No lighting: every voxel sends out its colour"},

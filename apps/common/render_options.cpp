@@ -10,6 +10,7 @@
 #include "apps/common/frame_series.h"
 #include "apps/common/kept_renderer.h"
 #include "engine/core/error.h"
+#include "engine/core/input_file.h"
 #include "engine/renderer.h"
 
 namespace freevoxels {
@@ -74,15 +75,19 @@ void RenderOptions::checkShares(std::span<const FrameJob> frames) const {
 void RenderOptions::check(std::span<const FrameJob> frames) const {
   checkShares(frames);
   if (!leads()) return scene.description.check();  // other processes may run where the outputs' folders are not
-  std::vector<std::string> images, volumes;
+  std::vector<std::string> images, inputs;
   for (std::size_t i = 0; i < frames.size(); ++i) {
     if (std::ranges::count(frames[i].files, kStandardOutput) > 1) fail(ErrorKind::Usage, "- is named twice: name it once");
     images.insert(images.end(), frames[i].files.begin(), frames[i].files.end());
-    if (i > 0 && frames[i].input != frames[i - 1].input) volumes.push_back(frames[i].input);
+    if (i > 0 && frames[i].input != frames[i - 1].input) inputs.push_back(frames[i].input);
+    if (frames[i].holdout && (i == 0 || frames[i].holdout != frames[i - 1].holdout)) {
+      if (!frames[i].isSkipped) checkInputFile("holdout", *frames[i].holdout);
+      inputs.push_back(*frames[i].holdout);
+    }
   }
   SceneOptions first = scene;
   first.description.input.volume = frames.front().input;
-  first.check(images, timings ? std::vector{*timings} : std::vector<std::string>{}, volumes);
+  first.check(images, timings ? std::vector{*timings} : std::vector<std::string>{}, inputs);
 }
 
 void RenderOptions::run(std::vector<FrameJob> frames) const {

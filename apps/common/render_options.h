@@ -2,6 +2,7 @@
 // Options and work that `render` and `turntable` share: images of one volume, whose table is made once, or of
 // several volumes.
 
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
@@ -19,6 +20,7 @@ namespace freevoxels {
 struct FrameJob {
   std::string input;
   std::vector<std::string> files;
+  std::optional<std::string> holdout = {};  ///< in place of that of the scene, which may be a pattern
   bool isSkipped = false;  ///< whether it is not drawn, but counts as a frame of its turn or film
 };
 

@@ -35,6 +35,16 @@ void refuseNan(const Image& image) {
            i / std::size_t(image.size.x), i % std::size_t(image.size.x));
 }
 
+/// What ends the rays of a frame; null if nothing does.
+std::shared_ptr<const Holdout> readHoldoutOf(CameraDescription camera, std::optional<TurnStep> step) {
+  if (step)
+    camera.holdout = holdoutOfTurn(camera, step->frame, step->frames);
+  else if (camera.holdout && isPattern(*camera.holdout))
+    fail(ErrorKind::Usage, "'{}' names an image for each frame of a turn or a film, and this is one frame: name its image in {}",
+         *camera.holdout, Parameter("holdout"));
+  return camera.readHoldout();
+}
+
 }  // namespace
 
 std::shared_ptr<const SharedVolume> openVolume(const std::string& file, const Json& keywords, const std::shared_ptr<DeviceContext>& context,
@@ -83,10 +93,12 @@ void saveScene(const std::filesystem::path& file, const Json& keywords) {
   writeScene(file, options.scene);
 }
 
-std::unique_ptr<const KeywordOptions> readFrame(const Json& more, const Json& own, bool choosesDevice) {
+std::unique_ptr<const KeywordOptions> readFrame(const Json& more, const Json& own, bool choosesDevice,
+                                                std::shared_ptr<const Holdout> holdout) {
   for (const Json* given : {&more, &own}) refuseTurn(*given);
   auto options = std::make_unique<KeywordOptions>(std::vector{more, own}, KeywordOptions::sections(false, choosesDevice));
   options->scene.check();
+  options->holdout = std::move(holdout);
   return options;
 }
 
@@ -124,6 +136,7 @@ void SceneRenderer::resolveView(const SceneDescription& description, std::option
   SceneDescription own = description;
   own.camera = own_.camera;
   own.camera.size = given.size;
+  own.camera.holdout = given.holdout;
   if (!given.position) own.camera.position.reset();  // an orbit has replaced it
   own.resolveView(scene_);
   if (given == own.camera) return;
@@ -175,6 +188,7 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
   const SceneDescription& description = options.scene;
   FrameSettings settings = frameSettings(description, depth);
   checkFrameFits(*context_->device, settings);
+  settings.holdout = options.holdout ? options.holdout : readHoldoutOf(description.camera, step);
   takeSource(description, step ? step->frames : 1, whole);
   if (film_) {
     resolveLikeFilm(description);

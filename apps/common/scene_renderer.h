@@ -33,8 +33,10 @@ std::vector<std::string> sceneWarnings(const std::filesystem::path& file);
 /// Writes keywords as a scene file, with names of files relative to its folder.
 void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
 
-/// Reads the options of one frame: `own`, overridden by `more`. `choosesDevice`: whether they choose the device. Fails for a turn.
-std::unique_ptr<const KeywordOptions> readFrame(const nlohmann::json& more, const nlohmann::json& own, bool choosesDevice);
+/// Reads the options of one frame: `own`, overridden by `more`. `choosesDevice`: whether they choose the device. `holdout` is in place of
+/// the file that they name; null if there is none. Fails for a turn.
+std::unique_ptr<const KeywordOptions> readFrame(const nlohmann::json& more, const nlohmann::json& own, bool choosesDevice,
+                                                std::shared_ptr<const Holdout> holdout = nullptr);
 
 /// A frame of a full turn around the volume.
 struct TurnStep {
@@ -56,8 +58,10 @@ class SceneRenderer {
   /// In a process forked from the renderer's own, what the renderer has on the device is given up, as it cannot be freed there.
   ~SceneRenderer();
 
-  /// Reads the options of a frame: the renderer's keywords, overridden by `more`.
-  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const { return readFrame(more, keywords_, choosesDevice_); }
+  /// Reads the options of a frame: the renderer's keywords, overridden by `more`. `holdout` as for readFrame().
+  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more, std::shared_ptr<const Holdout> holdout = nullptr) const {
+    return readFrame(more, keywords_, choosesDevice_, std::move(holdout));
+  }
 
   /// Draws a frame, with channels. What frames share is made again only if the options change it.
   Image render(const KeywordOptions& options, const Aovs& channels, const Progress& progress);

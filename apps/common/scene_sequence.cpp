@@ -150,7 +150,9 @@ Image SceneSequence::render(std::size_t frame, const KeywordOptions& options, co
     const Progress paced = pacedProgress(reading);
     chooseView(paced);
     open(frame, paced);
-    Image image = renderer_->render(options, channels, partOf(progress, begun, 1.0 - begun));
+    KeywordOptions ofFrame = options;
+    ofFrame.scene.camera.holdout = holdoutOf(options.scene.camera, found_.volumes[frame].number);
+    Image image = renderer_->render(ofFrame, channels, partOf(progress, begun, 1.0 - begun));
     lastFrame_.set(renderer_->timings(), renderer_->camera());
     return image;
   } catch (const EmptyVolumeError& error) {

@@ -37,7 +37,9 @@ class SceneSequence {
   const std::vector<NumberedVolume>& volumes() const { return found_.volumes; }
 
   /// Reads the options of a frame: the sequence's keywords, overridden by `more`.
-  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more) const { return readFrame(more, keywords_, !chosenContext_); }
+  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more, std::shared_ptr<const Holdout> holdout = nullptr) const {
+    return readFrame(more, keywords_, !chosenContext_, std::move(holdout));
+  }
   /// Draws the frame of a volume, with channels. The first call reads up to kMostFramesRead volumes, which decide the view. The frame drawn
   /// last stays in memory, and is not read again. Of several volumes, one that holds nothing becomes an image of the background.
   Image render(std::size_t frame, const KeywordOptions& options, const Aovs& channels, const Progress& progress);

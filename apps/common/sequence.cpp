@@ -180,6 +180,20 @@ bool isPattern(const std::string& file) {
   return hasNumberPlace(file) && !fs::exists(file, unreadable);
 }
 
+std::optional<std::string> holdoutOf(const CameraDescription& camera, const FrameNumber& number) {
+  if (!camera.holdout || !isPattern(*camera.holdout)) return camera.holdout;
+  return frameName(*camera.holdout, number);
+}
+
+std::optional<std::string> holdoutOfTurn(const CameraDescription& camera, int frame, int frames) {
+  if (camera.holdout && frames > 1 && !isPattern(*camera.holdout))
+    fail(ErrorKind::Usage,
+         "'{}' has the depths of one view, and the camera of a turn moves: render an image for each frame, and name them in {} "
+         "with a run of #, from 0",
+         *camera.holdout, Parameter("holdout"));
+  return holdoutOf(camera, frame);
+}
+
 std::string nameOfVolume(const std::string& volume) {
   return proceduralName(volume).value_or(fs::path(volume).stem().string());
 }

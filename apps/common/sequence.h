@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "apps/common/frame_names.h"
+#include "engine/description/scene_description.h"
 
 namespace freevoxels {
 
@@ -63,6 +64,12 @@ struct NumberedVolumes {
 /// The volumes of files and patterns. `frames`, which readFrameRange reads, chooses among the files of patterns. Fails as findSequence and
 /// selectFrames do, and with ErrorKind::Usage where `frames` chooses among nothing, or two neighbours are one file.
 NumberedVolumes findVolumes(std::span<const std::string> names, const std::optional<std::string>& frames);
+
+/// The image that a holdout's name is for the frame of this number: one for each frame if it is a pattern, else that of all frames.
+std::optional<std::string> holdoutOf(const CameraDescription& camera, const FrameNumber& number);
+/// The same for a frame of a full turn of `frames`, whose camera moves: ErrorKind::Usage unless the name is a pattern, where there are
+/// several.
+std::optional<std::string> holdoutOfTurn(const CameraDescription& camera, int frame, int frames);
 
 /// "cloud" of "a/cloud.vdb" and of "procedural:cloud".
 std::string nameOfVolume(const std::string& volume);

@@ -73,7 +73,8 @@ std::vector<FrameJob> SequenceOptions::plan(SceneOptions& scene) const {
   };
   std::vector<FrameJob> plan;
   for (const NumberedVolume& volume : found.volumes) {
-    FrameJob& frame = plan.emplace_back(FrameJob{.input = volume.file, .files = {}});
+    FrameJob& frame =
+        plan.emplace_back(FrameJob{.input = volume.file, .files = {}, .holdout = holdoutOf(scene.description.camera, volume.number)});
     if (namesAreOfVolumes)
       for (const std::string& extension : extensions) frame.files.push_back(placed(volume.name + extension));
     else

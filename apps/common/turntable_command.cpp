@@ -42,8 +42,10 @@ void TurntableCommand::add(CLI::App& app) {
     options_.scene.takeScene("_####.png");
     const SceneDescription& scene = options_.scene.description;
     std::vector<FrameJob> frames(std::size_t(scene.camera.frames.value_or(kDefaultFrames)), {.input = scene.input.volume, .files = {}});
-    for (std::size_t i = 0; i < frames.size(); ++i)
+    for (std::size_t i = 0; i < frames.size(); ++i) {
       for (const std::string& pattern : options_.scene.files) frames[i].files.push_back(frameName(pattern, int(i)));
+      frames[i].holdout = holdoutOfTurn(scene.camera, int(i), int(frames.size()));
+    }
     skipOthers(frames);
     options_.run(std::move(frames));
   });

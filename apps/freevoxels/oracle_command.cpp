@@ -43,7 +43,8 @@ void OracleCommand::run() {
   messages_.apply();
   scene_.takeScene("");
   scene_.description.lighting.shading = Shading::Scatter;  // the oracle has no surfaces
-  scene_.check(scene_.files);
+  const std::optional<std::string>& holdout = scene_.description.camera.holdout;
+  scene_.check(scene_.files, {}, holdout ? std::vector{*holdout} : std::vector<std::string>{});
   draw();
   if (messages_.quiet) return;
   printNames(scene_.files);
@@ -84,8 +85,10 @@ void OracleCommand::draw() const {
   const auto start = std::chrono::steady_clock::now();
   if (description.output.aovs.hasLayers())
     fail(ErrorKind::Usage, "the oracle has no layers: leave lights and channels out of {}", Parameter("aov"));
-  const OracleSettings settings{
-      .size = description.camera.size, .depth = description.output.aovs.needDepth(), .lighting = scene.lighting};
+  const OracleSettings settings{.size = description.camera.size,
+                                .depth = description.output.aovs.needDepth(),
+                                .lighting = scene.lighting,
+                                .holdout = description.camera.readHoldout()};
   std::vector<PlacedMedium> volumes{{scene.volume.get(), &scene.classification}};
   for (const SceneVolume& added : scene.added) volumes.push_back({known(added.source).get(), &added.classification});
   const Oracle oracle = renderOracle(volumes, scene.camera, settings, line.progress());

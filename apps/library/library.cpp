@@ -208,20 +208,22 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Image Renderer::render(std::string_view scene, bool withDepth, const Progress& progress) {
+Image Renderer::render(std::string_view scene, bool withDepth, const Progress& progress, const Holdout& holdout) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(renderer.render(*renderer.read(parseScene(scene)), {.depth = withDepth}, progress));
+    return imageOf(renderer.render(*renderer.read(parseScene(scene), holdoutOf(holdout)), {.depth = withDepth}, progress));
   });
 }
 
-Image Renderer::renderTurn(int frame, int frames, std::string_view scene, bool withDepth, const Progress& progress) {
+Image Renderer::renderTurn(int frame, int frames, std::string_view scene, bool withDepth, const Progress& progress,
+                           const Holdout& holdout) {
   return translated([&] {
     if (frames < 1 || frames > kMaximumFrames || frame < 0 || frame >= frames)
       fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames,
            Parameter("frames"), kMaximumFrames);
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene)), {frame, frames}, {.depth = withDepth}, progress));
+    return imageOf(
+        renderer.renderTurn(*renderer.read(parseScene(scene), holdoutOf(holdout)), {frame, frames}, {.depth = withDepth}, progress));
   });
 }
 
@@ -229,10 +231,10 @@ std::string Renderer::camera() const {
   return state_->renderer.camera().dump();
 }
 
-Frame Renderer::submit(std::string_view scene, bool withDepth, Progress progress) {
+Frame Renderer::submit(std::string_view scene, bool withDepth, Progress progress, const Holdout& holdout) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;
-    std::shared_ptr<const KeywordOptions> options = renderer.read(parseScene(scene));
+    std::shared_ptr<const KeywordOptions> options = renderer.read(parseScene(scene), holdoutOf(holdout));
     auto frame = std::make_shared<SubmittedFrame>(
         renderer.context(),
         [&renderer, options = std::move(options), withDepth](const freevoxels::Progress& report) {

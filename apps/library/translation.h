@@ -70,6 +70,16 @@ inline Json parseScene(std::string_view text) {
   return scene;
 }
 
+/// A copy; null if there are no depths.
+inline std::shared_ptr<const freevoxels::Holdout> holdoutOf(const Holdout& given) {
+  if (given.depths.empty()) return nullptr;
+  if (given.width < 1 || given.height < 1 || std::size_t(given.width) * std::size_t(given.height) != given.depths.size())
+    fail(freevoxels::ErrorKind::Input, "{} depths are not a holdout of {}x{} pixels", given.depths.size(), given.width, given.height);
+  freevoxels::Holdout holdout{.size = {given.width, given.height}, .depths = {given.depths.begin(), given.depths.end()}};
+  checkHoldout(holdout, "the holdout");
+  return std::make_shared<const freevoxels::Holdout>(std::move(holdout));
+}
+
 inline Image imageOf(freevoxels::Image image) {
   const float* const first = reinterpret_cast<const float*>(image.pixels.data());
   return {image.size.x, image.size.y, {first, first + 4 * image.pixels.size()}, std::move(image.depth)};

@@ -1,5 +1,8 @@
 #include "apps/python/call_arguments.h"
 
+#include <algorithm>
+
+#include "apps/python/numpy_array.h"
 #include "apps/python/python_values.h"
 #include "engine/core/error.h"
 
@@ -54,6 +57,23 @@ std::vector<std::string> namesOf(const py::object& names, const char* keyword) {
   else if (!names.is_none())
     add(names);
   return result;
+}
+
+std::shared_ptr<const Holdout> takeHoldout(py::kwargs& keywords) {
+  if (!keywords.contains("holdout")) return nullptr;
+  const py::object given = keywords["holdout"];
+  if (given.is_none() || isName(given)) return nullptr;
+  const ArrayView view = viewOf(given, fmt::format("{}", Parameter("holdout")));
+  if (view.dimensions() != 2 || view.elements() == 0 || std::max(view.shape[0], view.shape[1]) > kMaximumImageEdge)
+    fail(ErrorKind::Input, "{} takes depths of the shape (height, width) of the image, not {}", Parameter("holdout"), view.shapeText());
+  Holdout holdout{.size = {int(view.shape[1]), int(view.shape[0])}, .depths = std::vector<float>(std::size_t(view.elements()))};
+  copyFloats(view, holdout.depths.data());
+  checkHoldout(holdout, fmt::format("{}", Parameter("holdout")));
+  py::kwargs others;
+  for (const auto& [key, value] : keywords)
+    if (keywordText(key) != "holdout") others[key] = value;
+  keywords = others;
+  return std::make_shared<const Holdout>(std::move(holdout));
 }
 
 py::object Wanted::resultOf(Image& image) const {

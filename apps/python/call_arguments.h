@@ -4,6 +4,7 @@
 #include <pybind11/pybind11.h>
 
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <utility>
@@ -12,6 +13,7 @@
 #include "engine/core/stages.h"
 #include "engine/description/aov.h"
 #include "engine/image/image.h"
+#include "engine/scene/holdout.h"
 
 namespace freevoxels {
 
@@ -31,6 +33,10 @@ std::filesystem::path pathOf(const pybind11::object& file);
 
 /// The name of a file or pattern, or those of a list; none of None. Fails with ErrorKind::Usage for others.
 std::vector<std::string> namesOf(const pybind11::object& names, const char* keyword);
+
+/// Takes the depths of `holdout` out of the keywords, where that is an array; null where it is the name of a file, or missing. Fails with
+/// ErrorKind::Input for arrays of other than two dimensions, and for values that are no depths.
+std::shared_ptr<const Holdout> takeHoldout(pybind11::kwargs& keywords);
 
 /// What a drawing function returns beside the colours.
 struct Wanted {

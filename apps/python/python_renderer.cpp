@@ -48,16 +48,17 @@ std::unique_ptr<SceneRenderer> newRenderer(const py::args& arguments, const py::
 }
 
 py::object render(SceneRenderer& renderer, const py::args& more, const py::object& progress, const py::object& depth, const py::object& aov,
-                  const py::kwargs& keywords) {
+                  py::kwargs keywords) {
   refuseMore(more, "render()", "nothing");
   const Wanted wanted = wantedOf(depth, aov);
+  const std::shared_ptr<const Holdout> holdout = takeHoldout(keywords);
   refusePlacement(keywords, "a volume");
   const Json options = jsonOf(keywords);
   const Progress report = progressOf(progress);
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    const std::unique_ptr<const KeywordOptions> frame = renderer.read(options);
+    const std::unique_ptr<const KeywordOptions> frame = renderer.read(options, holdout);
     for (const std::string& warning : frame->warnings) tellPython(warning, true);
     image = renderer.render(*frame, wanted.channels, report);
   }
@@ -152,8 +153,10 @@ py::object renderOnce(const py::args& arguments, const py::object& progress, con
     keywords = withVolumes(several, keywords, kept);
     source = several[0];
   }
+  py::kwargs held;  // what may be an array is of the frame
+  if (keywords.contains("holdout")) held["holdout"] = keywords.attr("pop")("holdout");
   if (py::isinstance<PythonVolume>(source))
-    return render(*makeRenderer(source.cast<const PythonVolume&>(), keywords), {}, progress, depth, aov, {});
+    return render(*makeRenderer(source.cast<const PythonVolume&>(), keywords), {}, progress, depth, aov, held);
   const bool isFile = source.is_none() || isFileName(source);
   py::kwargs ofVolume, ofFrame;
   for (const auto& [key, value] : keywords) {
@@ -163,7 +166,7 @@ py::object renderOnce(const py::args& arguments, const py::object& progress, con
     if (!ofVolumeAlone) ofFrame[key] = value;
   }
   const PythonVolume volume = isFile ? volumeFromFile(source, {}, ofVolume) : volumeFromArray(py::args(py::make_tuple(source)), ofVolume);
-  return render(*makeRenderer(volume, ofFrame), {}, progress, depth, aov, {});
+  return render(*makeRenderer(volume, ofFrame), {}, progress, depth, aov, held);
 }
 
 }  // namespace
@@ -175,16 +178,17 @@ void addRenderer(py::module_& module) {
       .def("__next__", &Turntable::draw)
       .def("__len__", [](const Turntable& turn) { return turn.frames - turn.next; });
   py::class_<SceneRenderer>(module, "Renderer",
-                             "Renderer(volume, **kwargs)\n--\n\n"
-                             "Renders one volume many times. What frames have in common, the attenuation table above all, is\n"
-                             "kept on the device, and is made again only for a frame whose options change it. Threads may share\n"
-                             "a renderer; its frames are drawn one after another. Its own options give the view: the distance of the\n"
-                             "eye, the point that it looks at, and the default lights. The orbit of a frame turns the eye around that\n"
-                             "point.")
+                            "Renderer(volume, **kwargs)\n--\n\n"
+                            "Renders one volume many times. What frames have in common, the attenuation table above all, is\n"
+                            "kept on the device, and is made again only for a frame whose options change it. Threads may share\n"
+                            "a renderer; its frames are drawn one after another. Its own options give the view: the distance of the\n"
+                            "eye, the point that it looks at, and the default lights. The orbit of a frame turns the eye around that\n"
+                            "point.")
       .def(py::init(&newRenderer), "__init__(self, volume, **kwargs)\n--\n\nOptions given here hold for every frame.")
-      .def("__repr__", [](const SceneRenderer& r) {
-        return fmt::format("<freevoxels.Renderer on {}>", printable(r.context()->device->description().name));
-      })
+      .def("__repr__",
+           [](const SceneRenderer& r) {
+             return fmt::format("<freevoxels.Renderer on {}>", printable(r.context()->device->description().name));
+           })
       .def("turntable", &turntableOf, "frames"_a = py::none(), "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(),
            "turntable(self, frames, *, progress=None, depth=False, aov=None, **kwargs)\n--\n\n"
            "Yields the images of a full turn around the volume, as 'freevoxels turntable' draws them: the eye is as far away in all of\n"
@@ -197,13 +201,17 @@ void addRenderer(py::module_& module) {
            "of what is seen, infinite where there is nothing. With aov='depth,position,normal,transmittance', or some of them, returns\n"
            "(image, dictionary of arrays), which save() writes. progress(stage, fraction) is called about every 50 ms of work,\n"
            "and at the end, with the fraction of the frame that is done, which never decreases and ends at 1;\n"
-           "an exception that it raises abandons the frame. It may draw with other renderers. Options given here hold for this frame.")
-      .def_property_readonly("timings", [](const SceneRenderer& r) { return timingsOf(r.timings()); }, "List of (stage, milliseconds): the stages that the last complete frame ran.")
-      .def_property_readonly("camera", [](const SceneRenderer& r) { return cameraOf(r.camera()); },
-                             "The camera of the last complete frame as keywords of render(): camera_position, look_at and up in world\n"
-                             "units, fov in degrees or orthographic in world units, and size in pixels. None before the first frame.")
-      .def_property_readonly("device", [](const SceneRenderer& r) { return r.context()->device->description().name; },
-                             "Name of the Vulkan device.");
+           "an exception that it raises abandons the frame. It may draw with other renderers. Options given here hold for this frame.\n"
+           "holdout may also be an array (height, width) of depths, such as this function returns.")
+      .def_property_readonly(
+          "timings", [](const SceneRenderer& r) { return timingsOf(r.timings()); },
+          "List of (stage, milliseconds): the stages that the last complete frame ran.")
+      .def_property_readonly(
+          "camera", [](const SceneRenderer& r) { return cameraOf(r.camera()); },
+          "The camera of the last complete frame as keywords of render(): camera_position, look_at and up in world\n"
+          "units, fov in degrees or orthographic in world units, and size in pixels. None before the first frame.")
+      .def_property_readonly(
+          "device", [](const SceneRenderer& r) { return r.context()->device->description().name; }, "Name of the Vulkan device.");
   module.def("render", &renderOnce, "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(),
              "render(volume=None, *, progress=None, depth=False, aov=None, **kwargs)\n--\n\n"
              "Renders an array, a file or a Volume once, as Renderer(...).render() does. Also takes the keywords of Volume for an\n"

@@ -55,19 +55,21 @@ std::unique_ptr<SceneSequence> newSequence(const py::object& volume, const py::a
   return makeSequence(namesOf(volume, "volume"), optionsOf(frames, fixedView, keywords));
 }
 
-py::object drawFrame(SceneSequence& sequence, std::size_t frame, const py::object& progress, const Wanted& wanted, const Json& options) {
+py::object drawFrame(SceneSequence& sequence, std::size_t frame, const py::object& progress, const Wanted& wanted, const Json& options,
+                     const std::shared_ptr<const Holdout>& holdout = nullptr) {
   const Progress report = progressOf(progress);
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    image = sequence.render(frame, *sequence.read(options), wanted.channels, report);
+    image = sequence.render(frame, *sequence.read(options, holdout), wanted.channels, report);
   }
   return wanted.resultOf(image);
 }
 
 py::object renderFrame(SceneSequence& sequence, const py::object& frame, const py::args& more, const py::object& progress,
-                       const py::object& depth, const py::object& aov, const py::kwargs& keywords) {
+                       const py::object& depth, const py::object& aov, py::kwargs keywords) {
   refuseMore(more, "render()", "the frame");
+  const std::shared_ptr<const Holdout> holdout = takeHoldout(keywords);
   const std::size_t count = sequence.volumes().size();
   const Json number = jsonOf(frame, "frame");
   if (!number.is_number_integer() || number.get<std::int64_t>() < 0 || number.get<std::size_t>() >= count)
@@ -75,7 +77,7 @@ py::object renderFrame(SceneSequence& sequence, const py::object& frame, const p
          py::repr(frame).cast<std::string>());
   const Wanted wanted = wantedOf(depth, aov);
   refusePlacement(keywords, "a file");
-  return drawFrame(sequence, number.get<std::size_t>(), progress, wanted, jsonOf(keywords));
+  return drawFrame(sequence, number.get<std::size_t>(), progress, wanted, jsonOf(keywords), holdout);
 }
 
 /// The images of a sequence, drawn one by one as they are asked for. Keeps the sequence.

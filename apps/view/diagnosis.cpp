@@ -60,6 +60,7 @@ Image greyImage(const std::vector<SplatSums>& sums, glm::ivec2 size, double (*br
 Image sumsImage(Shown shown, Renderer& renderer, const Camera& camera, const FrameSettings& settings) {
   FrameSettings ordered = settings;
   if (settings.gathers() || settings.isSorted()) ordered.method = SplatSettings{};  // which alone have sums
+  ordered.holdout = nullptr;
   const std::vector<SplatSums> sums = RendererStages(renderer).renderSums(camera, ordered);
   if (shown == Shown::Transmittance)
     return greyImage(
@@ -74,6 +75,7 @@ Image blocksImage(const std::optional<Camera>& chosenFor, Renderer& renderer, co
                     const Camera& camera, const FrameSettings& settings) {
   FrameSettings splats = settings;
   if (settings.gathers()) splats.method = SplatSettings{};  // the gather chooses no blocks
+  splats.holdout = nullptr;
   renderer.render(chosenFor.value_or(camera), splats);
   const std::vector<Block> drawn = RendererStages(renderer).downloadDrawnBlocks();
   std::vector<PaintedBlock> painted;

@@ -1,11 +1,13 @@
 #include "apps/view/image_maker.h"
 
 #include <fmt/ranges.h>
+#include <spdlog/spdlog.h>
 
 #include <algorithm>
 #include <chrono>
 #include <utility>
 
+#include "apps/common/failure.h"
 #include "apps/common/scene_options.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_fields.h"
@@ -128,6 +130,28 @@ DrawnImage withOutput(const DrawnImage& drawn, const OutputDescription& output) 
   return result;
 }
 
+/// The scene's holdout where it has the size of the image. Elsewhere, and where it cannot be read, it is not shown, and one message says
+/// so.
+std::shared_ptr<const Holdout> ImageMaker::holdoutOf(const ImageRequest& request) {
+  const CameraDescription& camera = request.scene.camera;
+  if (camera.holdout != heldOutBy_) {
+    heldOutBy_ = camera.holdout;
+    holdout_ = nullptr;
+    isHoldoutMentioned_ = false;
+    try {
+      if (camera.holdout) holdout_ = readHoldout(*camera.holdout);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::Input) throw;
+      spdlog::warn("the holdout is not shown: {}", withOptions(error));
+    }
+  }
+  if (!holdout_ || holdout_->size == camera.size) return holdout_;
+  if (request.purpose == Purpose::Whole && !std::exchange(isHoldoutMentioned_, true))
+    spdlog::warn("the holdout '{}' is not shown: it has {}x{} pixels, and the image of the window {}x{}", *camera.holdout, holdout_->size.x,
+                 holdout_->size.y, camera.size.x, camera.size.y);
+  return nullptr;
+}
+
 DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progress) {
   request.scene.check();
   const std::string before = std::exchange(input_, request.scene.input.volume);
@@ -146,6 +170,7 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
 
   FrameSettings settings = frameSettings(request.scene, request.scene.output.aovs.needDepth());
   settings.lighting = drawn.scene.lighting;
+  settings.holdout = holdoutOf(request);
   drawn.image = renderer.renderOnDevice(drawn.scene.camera, settings, progress);
   drawn.shown = {drawn.image, &drawn.image->colorEnergy};
   drawn.times = renderer.timings();

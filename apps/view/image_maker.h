@@ -90,6 +90,7 @@ class ImageMaker {
  private:
   Scene resolve(const ImageRequest& request, const FilmView* film);
   std::shared_ptr<const VolumeSource> coarse(const Scene& scene, int voxelsAlongEdge);
+  std::shared_ptr<const Holdout> holdoutOf(const ImageRequest& request);
 
   const Device& device_;
   VolumeCache& volumes_;
@@ -100,6 +101,9 @@ class ImageMaker {
   std::string input_;           ///< of the last request
   std::optional<Scene> scene_;  ///< of the last request
   std::uint64_t revision_ = 0;
+  std::optional<std::string> heldOutBy_;  ///< CameraDescription::holdout of the last request
+  std::shared_ptr<const Holdout> holdout_;
+  bool isHoldoutMentioned_ = false;  ///< whether a message says that it is not shown
   KeptRenderer kept_;
   Diagnoser diagnoser_;
 };

@@ -26,6 +26,7 @@ class Makers {
     }
     ImageRequest other = request;
     other.scene.method = *request.compared;
+    if (other.scene.method.drawing() == Draw::Splats) other.scene.camera.holdout.reset();
     other.diagnosis = {};
     const auto tableOf = [](const ImageRequest& of) {
       const TableSettings table = of.scene.method.table();

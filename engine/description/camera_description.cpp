@@ -19,11 +19,18 @@ Camera given(const CameraDescription& description, glm::dvec3 upwards = {0.0, 1.
 }  // namespace
 
 void CameraDescription::look(const Camera& from) {
-  *this = {.position = from.position, .lookAt = from.lookAt, .up = from.up, .size = size, .frames = frames};
+  *this = {.position = from.position, .lookAt = from.lookAt, .up = from.up, .size = size, .frames = frames, .holdout = holdout};
   if (from.orthographic)
     orthographicHeight = from.orthographicHeight;
   else
     verticalFov = from.verticalFov;
+}
+
+std::shared_ptr<const Holdout> CameraDescription::readHoldout() const {
+  if (!holdout) return nullptr;
+  std::shared_ptr<const Holdout> read = freevoxels::readHoldout(*holdout);
+  checkHoldoutSize(*read, size);
+  return read;
 }
 
 void CameraDescription::check() const {

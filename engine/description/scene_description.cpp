@@ -103,6 +103,7 @@ SceneDescription SceneDescription::of(const std::string& volume) const {
 
 void SceneDescription::check() const {
   input.check();
+  if (camera.holdout && method.drawing() == Draw::Splats) failHoldoutOfSplats();
   if (!added.empty() && method.drawing() == Draw::Splats)
     fail(ErrorKind::Usage, "splats are drawn of one volume: leave out {} and other options of splats, or {}", Parameter("draw", "splats"),
          Parameter("add"));

@@ -78,9 +78,12 @@ struct CameraDescription {
   std::optional<glm::dvec2> orbit;  ///< azimuth and elevation of the eye around the content; else kDefaultAzimuth and -Elevation
   glm::ivec2 size{1024, 1024};      ///< pixels, 1 to kMaximumImageEdge each
   std::optional<int> frames;        ///< of a turn, 1 to kMaximumFrames; else kDefaultFrames
+  std::optional<std::string> holdout;  ///< an .exr of the depths of surfaces that this camera sees in front (readHoldout)
 
-  /// Gives everything but the size and the frames as this camera has it.
+  /// Gives everything but the size, the frames and the holdout as this camera has it.
   void look(const Camera& from);
+  /// Reads the holdout; null if there is none. Fails with ErrorKind::Input, and unless it has the size of the image.
+  std::shared_ptr<const Holdout> readHoldout() const;
   /// Fails for a camera that is wrong for every volume.
   void check() const;
   /// The direction of the eye around the content.

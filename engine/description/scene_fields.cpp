@@ -251,6 +251,7 @@ void addCamera(std::vector<SceneField>& fields) {
   section.add("orthographic", &View::orthographicHeight, numbers<double>({.form = "HEIGHT"})).excludes = {"fov"};
   section.add("size", &View::size, extent<glm::ivec2>("WxH", kMaximumImageEdge));
   section.add("frames", &View::frames, numbers<int>({.form = "N", .range = {1.0, double(kMaximumFrames)}, .whole = true}));
+  section.add("holdout", &View::holdout, text(Kind::File, "DEPTH.exr"));
 }
 
 constexpr const char* kLightForm = "direction=X,Y,Z[,color=R,G,B][,intensity=I] or position=X,Y,Z[,...]";

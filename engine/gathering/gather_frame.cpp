@@ -275,11 +275,12 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const glm::dvec3 viewAxis = glm::transpose(toPixel)[2];
   const double distance = orthographic ? 1.0 : referenceDistance(rays, viewAxis, dimensions);
   const glm::dvec2 size(settings.size);
+  const int raysOfPixel = settings.holdout ? raysOfHeldOutPixel(settings.size) : 0;
   // At least a few samples, however near the volume is.
   const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), leastPitch(settings.size), std::max(size.x, size.y));
-  const double pitch = std::round(wanted * kPitchUnits) / kPitchUnits;
-  // Coarse samples, two pitches apart, would miss single voxels that are much smaller.
-  const bool adapts = 2.0 * pitch * distance <= kCoarseVoxels * voxel;
+  const double pitch = raysOfPixel > 0 ? 1.0 / raysOfPixel : std::round(wanted * kPitchUnits) / kPitchUnits;
+  // Coarse samples, two pitches apart, would miss single voxels that are much smaller, and edges of a holdout if not each pixel has one.
+  const bool adapts = 2.0 * pitch * distance <= kCoarseVoxels * voxel && raysOfPixel != 1;
 
   // Seen obliquely, the blocks at a slice's near end become small long after those of its far end: a level may come in slice by
   // slice only after the rule calls all of its blocks small.
@@ -294,12 +295,15 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .distanceTolerance = float(kSmoothVoxels * volume.voxelSize),
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
-                            .mainAxis = majorAxis(rays.direction)};
+                            .mainAxis = majorAxis(rays.direction),
+                            .raysOfPixel = raysOfPixel};
   const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, 1);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];
   frame.samples = latticeSamples(settings.size, double(frame.pitch));
-  frame.firstSample = -0.5f * glm::vec2(settings.size) + 0.5f - float(shader::kLatticeMargin) * frame.pitch;
+  // The first pixel's middle, or the first of its own samples.
+  const float inPixel = raysOfPixel > 0 ? 0.5f * frame.pitch : 0.5f;
+  frame.firstSample = -0.5f * glm::vec2(settings.size) + inPixel - float(shader::kLatticeMargin) * frame.pitch;
   setSeen(frame, seenRectangle(rays, toPixel, dimensions, 1 << detail.coarsest));
   frame.worldRay[0] = linear * rays.direction;
   frame.worldRay[1] = linear * rays.directionX;

@@ -1,5 +1,6 @@
 #include "engine/gathering/gather_pass.h"
 
+#include <algorithm>
 #include <cstring>
 #include <limits>
 #include <span>
@@ -49,11 +50,11 @@ const Shader& gatherShader(const GatherVolume& volume, GatherPass::Case which) {
   return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][std::size_t(which)];
 }
 
-Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, const Shader& shader) {
+Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, bool holdout, const Shader& shader) {
   return makeComputePipeline(device, shader,
                              {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
                               std::uint32_t(volume.sampleLights()), volume.hasScattered(), volume.hasFlux(), volume.isTinted(),
-                              volume.hasEmissionApart(), levels && volume.hasScalars()});
+                              volume.hasEmissionApart(), levels && volume.hasScalars(), holdout});
 }
 
 std::uint64_t latticeSize(const shader::GatherFrame& frame) {
@@ -69,9 +70,10 @@ GatherPass::GatherPass(const Device& device)
       noLight_(device, sizeof(glm::vec4), MemoryUse::Device, "no scattered light", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
       noLightTexels_(device, noLight_) {}
 
-void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels) {
+void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels,
+                              bool holdout) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, gatherShader(volume, Case::Whole));
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, holdout, gatherShader(volume, Case::Whole));
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
@@ -85,6 +87,22 @@ void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
   made.colorEnergyTexels = TexelView(device_, made.colorEnergy);
   made.distanceTexels = TexelView(device_, made.distances, VK_FORMAT_R32_SFLOAT);
   sums = std::move(made);
+}
+
+glm::uvec2 GatherPass::holdOut(const std::shared_ptr<const Holdout>& holdout) {
+  if (holdout != heldOut_) {
+    heldOut_ = nullptr;
+    holdoutDistances_ = {};  // free the old buffer before allocating the new one
+    if (!holdout) return glm::uvec2(0);
+    // A number instead of infinity, with which not all devices compute.
+    static constexpr float kBeyondAnything = 1e30f;
+    std::vector<float> distances(holdout->depths.size());
+    std::ranges::transform(holdout->depths, distances.begin(), [](float depth) { return std::min(depth, kBeyondAnything); });
+    holdoutDistances_ = Buffer(device_, distances.size() * sizeof(float), MemoryUse::Device, "holdout");
+    upload(device_, holdoutDistances_, std::as_bytes(std::span(distances)));
+    heldOut_ = holdout;
+  }
+  return holdout ? addressWords(holdoutDistances_.address()) : glm::uvec2(0);
 }
 
 void GatherPass::setLattice(const shader::GatherFrame& frame) {
@@ -113,7 +131,7 @@ void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const 
                           const shader::SamplesPush& samples) const {
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
-    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, gatherShader(volume, how.which));
+    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, frame.raysOfPixel > 0, gatherShader(volume, how.which));
     const std::vector<Binding> bindings = gatherBindings(volume, axis, how);
     if (how.arguments != nullptr)
       commands.dispatchIndirect(pipeline, bindings, samples, *how.arguments, how.offset, how.mostGroups);
@@ -293,8 +311,9 @@ void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& fra
     else
       commands.fill(*target, target == &targets.distance ? std::numeric_limits<float>::infinity() : 0.0f);
   }
-  if (!scalars) recordStencil(commands, frame);
-  recordResampling(commands, frame, scalars, targets);
+  const bool hasStencil = !scalars && frame.raysOfPixel == 0;
+  if (hasStencil) recordStencil(commands, frame);
+  recordResampling(commands, frame, !hasStencil, targets);
   commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 

@@ -5,11 +5,13 @@
 // Eq. 4, without an attenuation table.
 
 #include <functional>
+#include <memory>
 #include <span>
 
 #include "engine/gathering/gather_frame.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
+#include "engine/scene/holdout.h"
 #include "engine/splatting/splat_pass.h"
 
 namespace freevoxels {
@@ -21,8 +23,10 @@ class GatherPass {
  public:
   explicit GatherPass(const Device& device);
   /// Has the pipelines that march rays along the given axes compiled. The volume is prepared for the frame. `levels` says whether the frame
-  /// has levels of detail above voxels.
-  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels);
+  /// has levels of detail above voxels, `holdout` whether it has one.
+  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout);
+  /// Uploads the holdout of the next frames, if there is one and it is not that of the last frame. Returns its GatherFrame::holdout.
+  glm::uvec2 holdOut(const std::shared_ptr<const Holdout>& holdout);
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const FrameTargets& targets);
 
@@ -100,6 +104,8 @@ class GatherPass {
   GatherLattice lattice_;  ///< of the last frame
   SampleRectangle seen_;   ///< of the last frame: outside of it sums are 0 and not stored
   Buffer frame_;  ///< shader::GatherFrame
+  std::shared_ptr<const Holdout> heldOut_;
+  Buffer holdoutDistances_;  ///< of `heldOut_`
   RenderTarget noDistance_;  ///< bound where a frame has none, of the format that the shader declares
   Buffer noLight_;           ///< and where it has no scattered light
   TexelView noLightTexels_;

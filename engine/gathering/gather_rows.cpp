@@ -28,6 +28,7 @@ SampleLattice latticeOf(const shader::GatherFrame& frame, bool scalars, bool dep
                         .orthographic = frame.orthographic != 0,
                         .scalars = scalars,
                         .depth = depth,
+                        .raysOfPixel = frame.raysOfPixel,
                         .seenLow = frame.seenLow,
                         .seenHigh = frame.seenHigh};
   for (std::size_t axis = 0; axis < 3; ++axis)

@@ -87,12 +87,13 @@ void encode(const std::filesystem::path& file, const Image& image, const ExrOpti
   writeExrPixels(file, header, frame);
 }
 
-/// Fails where the header is of no image that `decode` reads.
-void checkHeader(const std::filesystem::path& file, const Imf::Header& header, const ExrColors& colors, std::int64_t maximumPixels) {
+/// Fails where the header is of no image of which these channels are read.
+void checkHeader(const std::filesystem::path& file, const Imf::Header& header, std::span<const std::string> names,
+                 std::int64_t maximumPixels) {
   if (header.hasType() && header.type() != Imf::SCANLINEIMAGE && header.type() != Imf::TILEDIMAGE)
     fail(ErrorKind::Input, "cannot read '{}': it holds deep samples; flatten it first", file.string());
   const Imf::ChannelList& channels = header.channels();
-  for (const std::string& name : {colors.names[0], colors.names[1], colors.names[2], colors.names[3], colors.depth})
+  for (const std::string& name : names)
     if (const Imf::Channel* const channel = channels.findChannel(name); channel != nullptr && (channel->xSampling != 1 || channel->ySampling != 1))
       fail(ErrorKind::Input, "cannot read '{}': its channel {} has fewer samples than the image has pixels; write it with one a pixel",
            file.string(), printable(name));
@@ -104,24 +105,29 @@ void checkHeader(const std::filesystem::path& file, const Imf::Header& header, c
          file.string(), width, height);
 }
 
-/// Reads the rows a band at a time, so that a file which ends early fails before the memory of all is taken.
-Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
+/// Calls read(band) for the rows of a window a band at a time, so that a file which ends early fails before the memory of all is taken.
+template <typename Read>
+void readBands(const Imath::Box2i& window, const Read& read) {
   constexpr std::int64_t kPixelsOfABand = 1 << 20;
+  const std::int64_t rows = std::max<std::int64_t>(kPixelsOfABand / (std::int64_t(window.max.x) - window.min.x + 1), 1);
+  for (std::int64_t first = window.min.y; first <= window.max.y; first += rows)
+    read(Imath::Box2i({window.min.x, int(first)}, {window.max.x, int(std::min<std::int64_t>(first + rows - 1, window.max.y))}));
+}
+
+Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
   useAllProcessors();
   checkExrClaims(file);
   Imf::MultiPartInputFile exr(file.c_str(), Imf::globalThreadCount(), false);
   const ExrColors colors = findColors(file, exr);
   const Imf::Header& header = exr.header(colors.part);
-  checkHeader(file, header, colors, maximumPixels);
+  checkHeader(file, header, std::array{colors.names[0], colors.names[1], colors.names[2], colors.names[3], colors.depth}, maximumPixels);
   Imf::InputPart part(exr, colors.part);
   const Imath::Box2i window = header.dataWindow();
   const bool hasDepth = !colors.depth.empty(), isGrey = colors.names[0] == colors.names[1];
   Image image;
   image.size = {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1};
   const auto width = std::size_t(image.size.x);
-  const int rows = int(std::max<std::int64_t>(kPixelsOfABand / image.size.x, 1));
-  for (std::int64_t first = window.min.y; first <= window.max.y; first += rows) {
-    const Imath::Box2i band({window.min.x, int(first)}, {window.max.x, int(std::min<std::int64_t>(first + rows - 1, window.max.y))});
+  readBands(window, [&](const Imath::Box2i& band) {
     const std::size_t before = image.pixels.size(), after = before + width * std::size_t(band.max.y - band.min.y + 1);
     image.pixels.resize(after);
     Imf::FrameBuffer frame;
@@ -135,12 +141,51 @@ Image decode(const std::filesystem::path& file, std::int64_t maximumPixels) {
     }
     part.setFrameBuffer(frame);
     part.readPixels(band.min.y, band.max.y);
-  }
+  });
   if (isGrey)
     for (glm::vec4& pixel : image.pixels) pixel = {pixel.r, pixel.r, pixel.r, pixel.a};
   if (const std::optional<glm::dmat3> matrix = isGrey ? std::nullopt : toRec709(header))
     for (glm::vec4& pixel : image.pixels) pixel = glm::vec4(glm::vec3(*matrix * glm::dvec3(pixel)), pixel.a);
   return image;
+}
+
+Image decodeDepth(const std::filesystem::path& file, std::int64_t maximumPixels) {
+  useAllProcessors();
+  checkExrClaims(file);
+  Imf::MultiPartInputFile exr(file.c_str(), Imf::globalThreadCount(), false);
+  const ExrChannel depth = findDepth(file, exr);
+  const Imf::Header& header = exr.header(depth.part);
+  checkHeader(file, header, std::array{depth.name}, maximumPixels);
+  Imf::InputPart part(exr, depth.part);
+  const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
+  Image image{.size = {window.max.x - window.min.x + 1, window.max.y - window.min.y + 1},
+              .wholeSize = {display.max.x - display.min.x + 1, display.max.y - display.min.y + 1},
+              .offset = {window.min.x - display.min.x, window.min.y - display.min.y}};
+  readBands(window, [&](const Imath::Box2i& band) {
+    const std::size_t before = image.depth.size();
+    image.depth.resize(before + std::size_t(image.size.x) * std::size_t(band.max.y - band.min.y + 1));
+    Imf::FrameBuffer frame;
+    frame.insert(depth.name, makeSlice(Imf::FLOAT, &image.depth[before], 1, band));
+    part.setFrameBuffer(frame);
+    part.readPixels(band.min.y, band.max.y);
+  });
+  return image;
+}
+
+/// Calls `decodeFile` and names the file where OpenEXR fails.
+template <typename Decode>
+Image readFile(const std::filesystem::path& file, const Decode& decodeFile) {
+  checkInputFile("image", file);
+  try {
+    return decodeFile();
+  } catch (const Error&) {
+    throw;
+  } catch (const std::bad_alloc&) {
+    throw;
+  } catch (const std::exception& e) {
+    fail(ErrorKind::Input, "cannot read '{}': it is not a complete OpenEXR image ({}); write it again",
+         file.string(), printablePart(e.what(), kLongestReason));
+  }
 }
 
 }  // namespace
@@ -155,17 +200,11 @@ void writeExr(const std::filesystem::path& file, const Image& image, const ExrOp
 }
 
 Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels) {
-  checkInputFile("image", file);
-  try {
-    return decode(file, maximumPixels);
-  } catch (const Error&) {
-    throw;
-  } catch (const std::bad_alloc&) {
-    throw;
-  } catch (const std::exception& e) {
-    fail(ErrorKind::Input, "cannot read '{}': it is not a complete OpenEXR image ({}); write it again",
-         file.string(), printablePart(e.what(), kLongestReason));
-  }
+  return readFile(file, [&] { return decode(file, maximumPixels); });
+}
+
+Image readExrDepth(const std::filesystem::path& file, std::int64_t maximumPixels) {
+  return readFile(file, [&] { return decodeDepth(file, maximumPixels); });
 }
 
 }  // namespace freevoxels

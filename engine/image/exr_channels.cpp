@@ -103,6 +103,23 @@ ExrColors findColors(const std::filesystem::path& file, const Imf::MultiPartInpu
        layers.size(), fmt::join(names, ", "), layers.size() > kMostNamed ? ", ..." : "");
 }
 
+ExrChannel findDepth(const std::filesystem::path& file, const Imf::MultiPartInputFile& exr) {
+  std::vector<ExrChannel> all, ofDepth;
+  for (int part = 0; part < exr.parts(); ++part) {
+    const Imf::ChannelList& channels = exr.header(part).channels();
+    if (channels.findChannel("Z")) return {.part = part, .name = "Z"};
+    for (auto channel = channels.begin(); channel != channels.end(); ++channel) {
+      all.push_back({.part = part, .name = channel.name()});
+      const std::string name = lowerCase(all.back().name);
+      if (name == "depth.z" || name.ends_with(".depth.z")) ofDepth.push_back(all.back());
+    }
+  }
+  if (ofDepth.size() == 1) return ofDepth.front();
+  if (all.size() == 1) return all.front();
+  fail(ErrorKind::Input, "cannot read depths of '{}': it has {} and no channel Z; write the one to use as Z", file.string(),
+       ofDepth.empty() ? fmt::format("{} channels", all.size()) : fmt::format("{} layers of depths", ofDepth.size()));
+}
+
 std::optional<glm::dmat3> toRec709(const Imf::Header& header) {
   const Imf::Chromaticities rec709;  // OpenEXR's default
   if (!Imf::hasChromaticities(header)) return std::nullopt;

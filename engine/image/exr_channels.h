@@ -18,6 +18,16 @@ struct ExrColors {
   std::string depth;                 ///< empty if there is none
 };
 
+/// One channel of one part.
+struct ExrChannel {
+  int part = 0;
+  std::string name;
+};
+
+/// The depth: Z of the first part that has it; else the only Z of a layer that is called depth, as "ViewLayer.Depth.Z", in any case; else
+/// the file's only channel. Fails with ErrorKind::Input.
+ExrChannel findDepth(const std::filesystem::path& file, const Imf::MultiPartInputFile& exr);
+
 /// R, G and B of the first part that has them; else of the only layer, or of one that renderers call their image (Combined, rgba, beauty);
 /// else Y alone, as grey. Fails with ErrorKind::Input, which lists the layers.
 ExrColors findColors(const std::filesystem::path& file, const Imf::MultiPartInputFile& exr);

@@ -52,6 +52,10 @@ void writeExr(const std::filesystem::path& file, const Image& image, const ExrOp
 /// header claims. Fails with ErrorKind::Input.
 Image readExr(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 30);
 
+/// Reads the depths of such a file alone, whatever colours it has: channel Z, that of a layer called depth, or the only channel. The image
+/// has `depth` but no pixels, and is that part of `wholeSize`, the display window, which the data window is. Fails with ErrorKind::Input.
+Image readExrDepth(const std::filesystem::path& file, std::int64_t maximumPixels = std::int64_t(1) << 28);
+
 /// Reads any PNG (grey, palette, 8 or 16 bits, interlaced) as sRGB with straight alpha, whatever its chunks
 /// say. Fails with ErrorKind::Input.
 Image readPng(const std::filesystem::path& file);

@@ -9,6 +9,7 @@
 #include <stdexcept>
 
 #include "engine/core/error.h"
+#include "engine/core/parameter.h"
 #include "shaders/gather_interface.h"
 
 namespace freevoxels {
@@ -122,17 +123,17 @@ std::vector<LatticeSample> resampled(const SampleLattice& lattice, const std::ve
   to[side] = pixels;
   std::vector<LatticeSample> result(std::size_t(to.x) * std::size_t(to.y));
   const std::size_t step = side == 0 ? 1 : std::size_t(from.x);
-  const int taps = lattice.pitch >= 1.0 ? kSparseResampleTaps : kResampleTaps;
+  const int own = lattice.raysOfPixel, taps = own > 0 ? own : lattice.pitch >= 1.0 ? kSparseResampleTaps : kResampleTaps;
   tbb::parallel_for(0, to.y, [&](int y) {
     for (int x = 0; x < to.x; ++x) {
       glm::ivec2 place(x, y);
       const double position = place[side] / lattice.pitch + kLatticeMargin;
-      const int low = int(std::floor(position - 0.5 / lattice.pitch)) - 1;
+      const int low = own > 0 ? place[side] * own + kLatticeMargin : int(std::floor(position - 0.5 / lattice.pitch)) - 1;
       place[side] = 0;
       const std::size_t start = std::size_t(place.x) + std::size_t(from.x) * std::size_t(place.y);
       WeightedSamples sum;
       for (int i = low; i < low + taps; ++i)
-        sum.add(pixelWeight(position - i, 0.5 / lattice.pitch),
+        sum.add(own > 0 ? 1.0 / own : pixelWeight(position - i, 0.5 / lattice.pitch),
                 samples[start + step * std::size_t(std::clamp(i, 0, lattice.samples[side] - 1))]);
       result[std::size_t(x) + std::size_t(to.x) * std::size_t(y)] = sum.sum();
     }
@@ -148,7 +149,7 @@ void visitNumbers(Lattice& lattice, const Visit& visit) {
     for (int i = 0; i < 3; ++i) visit(axis.along[i]);
     visit(axis.tilt.x), visit(axis.tilt.y), visit(axis.tiltDepth);
   }
-  visit(lattice.mainAxis), visit(lattice.orthographic), visit(lattice.scalars), visit(lattice.depth);
+  visit(lattice.mainAxis), visit(lattice.orthographic), visit(lattice.scalars), visit(lattice.depth), visit(lattice.raysOfPixel);
   for (auto* corner : {&lattice.seenLow, &lattice.seenHigh}) visit(corner->x), visit(corner->y);
 }
 
@@ -162,6 +163,14 @@ double leastPitch(glm::ivec2 size) {
   const double pixels = double(size.x) * size.y;
   const double least = std::max(std::clamp(std::sqrt(pixels / kManySamples), double(kMinPitch), 1.0), std::sqrt(pixels / kMostSamples));
   return std::round(least * kPitchUnits) / kPitchUnits;
+}
+
+int raysOfHeldOutPixel(glm::ivec2 size) {
+  const double pixels = double(size.x) * size.y;
+  if (pixels > kMostSamples)
+    fail(ErrorKind::Usage, "an image with {} has at most {} pixels, and {}x{} are more: draw a smaller one", Parameter("holdout"),
+         int(kMostSamples), size.x, size.y);
+  return 4.0 * pixels <= kManySamples ? 2 : 1;
 }
 
 std::string latticeText(const SampleLattice& lattice) {
@@ -182,14 +191,14 @@ SampleLattice latticeOf(const std::string& text) {
   std::string rest;
   isValid = isValid && !(words >> rest) && glm::all(glm::greaterThan(lattice.samples, glm::ivec2(3))) &&
             glm::all(glm::lessThan(lattice.samples, glm::ivec2(kMaxSamples))) && lattice.pitch >= double(kMinPitch) &&
-            lattice.mainAxis >= 0 && lattice.mainAxis < 3;
+            lattice.mainAxis >= 0 && lattice.mainAxis < 3 && (lattice.raysOfPixel == 0 || lattice.pitch * lattice.raysOfPixel == 1.0);
   if (!isValid) throw std::invalid_argument("its lattice of samples is damaged");
   return lattice;
 }
 
 Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, std::vector<LatticeSample> samples) {
   FV_CHECK_EQ(samples.size(), std::size_t(lattice.samples.x) * std::size_t(lattice.samples.y));
-  if (!lattice.scalars) samples = stencilled(lattice, samples);
+  if (!lattice.scalars && lattice.raysOfPixel == 0) samples = stencilled(lattice, samples);
   samples = resampled(lattice, samples, lattice.samples, 0, size.x);
   const std::vector<LatticeSample> pixels = resampled(lattice, samples, {size.x, lattice.samples.y}, 1, size.y);
   Image image{.size = size};

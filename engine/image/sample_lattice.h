@@ -30,6 +30,7 @@ struct SampleLattice {
   bool orthographic = false;
   bool scalars = false;            ///< whether voxels are classified after interpolation
   bool depth = false;              ///< whether the image has depth
+  int raysOfPixel = 0;  ///< with a holdout: along each axis, the samples of a pixel, of which alone it is made, without a stencil; else 0
   glm::dvec2 seenLow{0.0}, seenHigh{0.0};  ///< range of positions in which the volume is visible
 
   bool operator==(const SampleLattice&) const = default;
@@ -41,6 +42,10 @@ glm::ivec2 latticeSamples(glm::ivec2 size, double pitch);
 /// The least distance between the samples of an image of this size, in pixels: a multiple of 1 / kPitchUnits. With it, images of less than
 /// 16 million pixels have no more than 16 million samples and those on the borders of the lattice, and larger images no more than 64 million.
 double leastPitch(glm::ivec2 size);
+
+/// With a holdout: the samples of a pixel along each axis, in images of this size. Fails with ErrorKind::Usage if one sample a pixel is
+/// more than any image has.
+int raysOfHeldOutPixel(glm::ivec2 size);
 
 /// The lattice as one line of text, from which latticeOf makes an equal one.
 std::string latticeText(const SampleLattice& lattice);

@@ -123,6 +123,7 @@ RaySum MergedMarch::sum(const WorldRay& ray) const {
     begin = std::min(begin, enter);
     end = std::max(end, leave);
   }
+  end = std::min(end, ray.end);
   RaySum result;
   const double worldLength = glm::length(ray.direction);
   const glm::dvec3 toEye = -ray.direction / worldLength;

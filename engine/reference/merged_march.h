@@ -3,6 +3,7 @@
 // the light that is scattered and emitted, add up (Max 1995, for a mixture of media). By small steps, for any number of fields.
 
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <vector>
@@ -18,6 +19,7 @@ namespace freevoxels {
 /// A ray in the world: the points origin + t * direction with t >= 0.
 struct WorldRay {
   glm::dvec3 origin, direction;
+  double end = std::numeric_limits<double>::infinity();  ///< the largest t that MergedMarch::sum() reads
 };
 
 class MergedMarch {

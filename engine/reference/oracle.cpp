@@ -72,6 +72,13 @@ int firstSamplesOf(const Volume& volume, const PixelRays& rays, const OracleSett
   return std::min(int(std::bit_ceil(unsigned(wanted))), settings.maximumSamples / 2);
 }
 
+/// Where the ray of a position on the image ends.
+double endOfRay(const OracleSettings& settings, glm::dvec2 at) {
+  if (!settings.holdout) return std::numeric_limits<double>::infinity();
+  const glm::ivec2 pixel(at);
+  return double(settings.holdout->depths[std::size_t(pixel.y) * std::size_t(settings.size.x) + std::size_t(pixel.x)]);
+}
+
 PixelMean Sampler::sample(std::size_t pixel, int samples) const {
   const std::size_t width = std::size_t(settings_.size.x);
   const glm::dvec2 corner(double(pixel % width), double(pixel / width));
@@ -160,6 +167,7 @@ Oracle renderOracle(const Volume& volume, const Classification& classification, 
   FV_CHECK_LT(0, settings.size.y);
   FV_CHECK_LT(0.0, settings.step);
   FV_CHECK_LE(2 * kFewestSamples, settings.maximumSamples);
+  if (settings.holdout) checkHoldoutSize(*settings.holdout, settings.size);
   const ReferenceField field(volume, classification, progress);
   const PixelRays rays = pixelRays(camera, settings.size, volume.indexToWorld);
   std::unique_ptr<LightMarch> light;  // null without lighting
@@ -173,6 +181,7 @@ Oracle renderOracle(const Volume& volume, const Classification& classification, 
     ray.worldLength = glm::length(inWorld);
     ray.worldDirection = inWorld / ray.worldLength;
     ray.distance = settings.depth;
+    ray.end = endOfRay(settings, at);
     return marchRay(field, ray, settings.step, light.get());
   };
   return Sampler(settings, firstSamplesOf(volume, rays, settings), sum, progress).run();
@@ -187,7 +196,8 @@ Oracle renderOracle(std::span<const PlacedMedium> volumes, const Camera& camera,
   const PixelRays rays = pixelRays(camera, settings.size, glm::dmat4(1.0));
   const auto sum = [&](glm::dvec2 at) {
     return march.sum({.origin = rays.origin + at.x * rays.originX + at.y * rays.originY,
-                      .direction = rays.direction + at.x * rays.directionX + at.y * rays.directionY});
+                      .direction = rays.direction + at.x * rays.directionX + at.y * rays.directionY,
+                      .end = endOfRay(settings, at)});
   };
   return Sampler(settings, samples, sum, progress).run();
 }

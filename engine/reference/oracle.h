@@ -8,12 +8,14 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <span>
 
 #include "engine/core/stages.h"
 #include "engine/image/image.h"
 #include "engine/scene/camera.h"
+#include "engine/scene/holdout.h"
 #include "engine/scene/lighting.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/scattering_medium.h"
@@ -28,6 +30,7 @@ struct OracleSettings {
   double tolerance = 1e-3;  ///< largest change of a pixel's premultiplied RGBA by the last doubling
   int maximumSamples = 32;  ///< most rays along an edge of a pixel: a power of two, at least 4
   std::optional<Lighting> lighting = std::nullopt;  ///< if empty, every voxel sends out its colour
+  std::shared_ptr<const Holdout> holdout = nullptr;  ///< of the image's size: where the rays of its pixels end; null if there is none
 };
 
 struct Oracle {

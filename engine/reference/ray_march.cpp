@@ -227,7 +227,7 @@ class March {
 };
 
 RaySum March::run() {
-  walkField(field_, ray_, std::numeric_limits<double>::infinity(),
+  walkField(field_, ray_, ray_.end,
             [this](const glm::vec4* corner, const glm::vec4* emission, glm::ivec3 cell, double enter, double leave) {
               return crossCell(corner, emission, cell, enter, leave);
             });

@@ -2,6 +2,7 @@
 // Emission and absorption along one ray through the field, in double precision.
 
 #include <glm/glm.hpp>
+#include <limits>
 
 #include "engine/reference/light_march.h"
 #include "engine/reference/reference_field.h"
@@ -13,6 +14,7 @@ struct MarchedRay {
   glm::dvec3 origin, direction;
   double worldLength = 1.0;                  ///< world length of `direction`
   bool distance = true;                      ///< whether to compute RaySum::distance
+  double end = std::numeric_limits<double>::infinity();  ///< the largest t that marchRay() reads
   glm::dvec3 worldDirection{0.0, 0.0, 1.0};  ///< unit vector; only used with lighting
 };
 

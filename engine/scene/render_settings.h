@@ -2,9 +2,11 @@
 // The settings of a frame apart from camera and classification.
 
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <variant>
 
+#include "engine/scene/holdout.h"
 #include "engine/scene/lighting.h"
 #include "engine/scene/table_settings.h"
 
@@ -57,6 +59,8 @@ struct FrameSettings {
   bool depth = false;  ///< whether to compute Image::depth
   /// If empty, every voxel sends out its colour without lighting.
   std::optional<Lighting> lighting = std::nullopt;
+  /// Where rays end, of the image's size; only gathered. Null if there is none.
+  std::shared_ptr<const Holdout> holdout = nullptr;
 
   bool gathers() const { return std::holds_alternative<GatherSettings>(method); }
   GatherSettings& gather() { return std::get<GatherSettings>(method); }

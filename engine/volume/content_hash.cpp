@@ -72,4 +72,11 @@ std::string contentHash(const Volume& volume, const Classification& classificati
   return hash.digits();
 }
 
+std::string contentHash(const Holdout& holdout) {
+  Hash hash;
+  hash.add(holdout.size);
+  hash.add(std::span<const float>(holdout.depths));
+  return hash.digits();
+}
+
 }  // namespace freevoxels

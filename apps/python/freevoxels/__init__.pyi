@@ -50,6 +50,7 @@ class _Camera(TypedDict, total=False):
     orthographic: float
     size: Sequence_[int] | NDArray[Any] | str
     frames: int
+    holdout: _Path | ArrayLike  # depths (height, width) in memory for render() alone
     camera: _Section
 
 class _Classification(TypedDict, total=False):

@@ -148,6 +148,15 @@ struct Image {
   std::vector<float> depth;
 };
 
+/// Surfaces from elsewhere in front of which volumes are drawn, in place of the scene's key "holdout": the rays of a pixel end at its
+/// depth. Functions copy the depths. None if there are none.
+struct Holdout {
+  int width = 0, height = 0;  ///< of the image to be drawn
+  /// One value a pixel, top row first, as Image::depth has them: the distance along the viewing axis, in world units; infinite, or beyond
+  /// the volume, where nothing is in front. ErrorKind::Input for NaN and for values below 0.
+  std::span<const float> depths = {};
+};
+
 struct DeviceFrame;
 
 /// A frame begun by Renderer::submit(), which a thread of the renderer draws. A moved-from Frame may only be assigned to or destroyed.
@@ -190,13 +199,14 @@ class FREEVOXELS_API Renderer {
   Renderer& operator=(Renderer&&) noexcept;
 
   /// Draws a frame and waits for it. The keys of `scene` override those of the renderer's scene for this frame.
-  Image render(std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
+  Image render(std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {}, const Holdout& holdout = {});
   /// Draws frame `frame` of a full turn of `frames`, with the cameras and the light of `freevoxels turntable`: the eye is as far away in
   /// all of them as the farthest needs.
-  Image renderTurn(int frame, int frames, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
+  Image renderTurn(int frame, int frames, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {},
+                   const Holdout& holdout = {});
   /// Begins the same frame as render() and returns at once. Frames of a renderer are drawn in the order in which they were submitted.
   /// Throws for errors of `scene`; Frame::wait() throws those of drawing.
-  Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {});
+  Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {}, const Holdout& holdout = {});
 
   /// The camera of the last complete frame, as the text of a scene that gives it. "{}" before the first frame.
   std::string camera() const;
@@ -234,7 +244,8 @@ class FREEVOXELS_API Sequence {
   /// Draws a frame, from 0 to size() - 1, and waits for it. `scene` as for Renderer::render(): its "orbit" moves the eye about the film's
   /// look-at point. The frame drawn last stays in memory. In a film of several, one that holds nothing is transparent everywhere; a file
   /// that cannot be read fails with ErrorKind::Input, and other frames may be drawn afterwards.
-  Image render(std::size_t frame, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {});
+  Image render(std::size_t frame, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {},
+               const Holdout& holdout = {});
   /// Draws all frames and writes each, when it is complete, into one file for each of `images`, in whose name a run of # stands for the
   /// number. `scene` is as for freevoxels::v1::save(), and "aov" adds channels to an .exr. `skipExisting`: frames whose files exist are left
   /// as they are. Files that cannot be read are left out; ErrorKind::Input is thrown at the end. Returns the names of the images. The

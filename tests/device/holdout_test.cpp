@@ -1,0 +1,110 @@
+// Rays that end at the depths of surfaces from elsewhere: closed forms, and the oracle with the same depths.
+
+#include <cmath>
+#include <limits>
+
+#include "engine/renderer.h"
+#include "engine/validation/stage_frames.h"
+#include "tests/device/gather_fixture.h"
+
+namespace freevoxels {
+namespace {
+
+constexpr float kNothing = std::numeric_limits<float>::infinity();
+
+class HoldoutTest : public GatherTest {
+ protected:
+  using Depths = std::vector<float>;
+
+  static std::shared_ptr<const Holdout> holdout(glm::ivec2 size, const std::function<float(glm::ivec2)>& depthOf) {
+    Holdout made{.size = size, .depths = {}};
+    for (int y = 0; y < size.y; ++y)
+      for (int x = 0; x < size.x; ++x) made.depths.push_back(depthOf({x, y}));
+    return std::make_shared<const Holdout>(std::move(made));
+  }
+
+  /// The ray of a pixel's middle in the world.
+  static std::pair<glm::dvec3, glm::dvec3> rayOf(const Camera& camera, glm::ivec2 size, glm::ivec2 pixel) {
+    const PixelRays rays = pixelRays(camera, size, glm::dmat4(1.0));
+    const glm::dvec2 at = glm::dvec2(pixel) + 0.5;
+    return {rays.origin + at.x * rays.originX + at.y * rays.originY, rays.direction + at.x * rays.directionX + at.y * rays.directionY};
+  }
+
+  /// A ball, and behind it a tilted plane that ends at half of the image's height.
+  static std::shared_ptr<const Holdout> ballAndPlane(const Camera& camera, glm::ivec2 size, glm::dvec3 middle, double radius) {
+    return holdout(size, [&](glm::ivec2 pixel) {
+      const auto [origin, direction] = rayOf(camera, size, pixel);
+      const glm::dvec3 from = origin - middle;
+      const double a = glm::dot(direction, direction), b = glm::dot(from, direction), c = glm::dot(from, from) - radius * radius;
+      const double root = b * b - a * c, near = root > 0.0 ? (-b - std::sqrt(root)) / a : -1.0;
+      if (near > 0.0) return float(near);
+      const glm::dvec3 normal(0.2, 1.0, 0.5);
+      const double plane = glm::dot(middle + glm::dvec3(0.05, -0.1, 0.0) - origin, normal) / glm::dot(direction, normal);
+      return pixel.y > size.y / 2 && plane > 0.0 ? float(plane) : kNothing;
+    });
+  }
+  static glm::dvec3 middleOf(const Volume& volume) {
+    return glm::dvec3(volume.indexToWorld * glm::dvec4(0.5 * glm::dvec3(volume.dimensions - 1), 1.0));
+  }
+  static Image oracleOf(const Scene& scene, const Camera& camera, const FrameSettings& settings) {
+    return renderOracle(
+               scene.volume, scene.classification, camera,
+               {.size = settings.size, .tolerance = 4e-3, .maximumSamples = 8, .lighting = settings.lighting, .holdout = settings.holdout})
+        .image;
+  }
+  /// PSNR to the oracle in front of a ball and a plane in the middle of the volume.
+  static double quality(const Scene& scene, const Camera& camera, FrameSettings settings) {
+    settings.holdout = ballAndPlane(camera, settings.size, middleOf(scene.volume), 0.22);
+    const Image image = Renderer(device(), scene.volume, scene.classification, {}).render(camera, settings);
+    return psnr(image, oracleOf(scene, camera, settings));
+  }
+};
+
+/// Half of the pixels see what is in front of an exact depth.
+TEST_F(HoldoutTest, AlphaOfFogIsThatOfItsLengthInFront) {
+  const double sigma = 1.3;
+  const Volume box = makeVolume(glm::ivec3(33), cubeTransform(glm::ivec3(33)), [](int, int, int) { return 1.0; });
+  FrameSettings settings = gathering({24, 18});
+  Camera camera = alongZ(box, settings.size, 1.2);
+  const double voxel = box.voxelSize();
+  for (const double length : {0.31, 0.5, 0.777}) {
+    const double depth = 10.0 - 0.5 * 33 * voxel + length;  // behind the first face, which is half a voxel in front of the first centre
+    settings.holdout = holdout(settings.size, [&](glm::ivec2 pixel) {
+      return pixel.x < 11 ? float(depth) : pixel.x == 11 ? 0.0f : kNothing;
+    });
+    for (const ClassificationOrder order : {ClassificationOrder::Post, ClassificationOrder::Pre}) {
+      Classification classification{.densityScale = sigma};
+      if (order == ClassificationOrder::Post)
+        classification = {.transferFunction =
+                              TransferFunction{.opacity = {{0.0f, float(1.0 - std::exp(-sigma))}, {1.0f, float(1.0 - std::exp(-sigma))}}}};
+      const Image image = Renderer(device(), box, classification, {}).render(camera, settings);
+      const auto at = [&](int x, int y) { return image.pixels[std::size_t(y) * 24 + std::size_t(x)].a; };
+      EXPECT_NEAR(at(5, 9), 1.0 - std::exp(-sigma * length), 1e-3) << length;
+      EXPECT_NEAR(at(10, 8), 1.0 - std::exp(-sigma * length), 1e-3) << length;
+      EXPECT_EQ(at(11, 8), 0.0f);
+      EXPECT_NEAR(at(12, 8), 1.0 - std::exp(-sigma * 33 * voxel), 1e-3);
+    }
+  }
+}
+
+TEST_F(HoldoutTest, ACloudInFrontOfSurfacesMatchesTheOracle) {
+  const Scene scene = cloud(37);
+  const Camera outside = framingCamera(scene.volume, 35.0, 25.0, 1.25, {});
+  EXPECT_GE(quality(scene, outside, gathering({55, 44})), 50.0);
+  EXPECT_GE(quality(scene, outside, gathering({15, 12})), 45.0);
+  EXPECT_GE(quality(scene, cameraInside(scene.volume, outside), gathering({40, 32})), 45.0);
+  EXPECT_GE(quality(scene, framingCamera(scene.volume, 200.0, -50.0, 1.25, {.orthographic = true}), gathering({55, 44})), 50.0);
+}
+
+TEST_F(HoldoutTest, ALitScanInFrontOfSurfacesMatchesTheOracle) {
+  Scene scene{.volume = makeProcedural("head", 40), .classification = {}};
+  scene.classification = coloured(scene.volume, 0.4f);
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.25, {});
+  FrameSettings settings = gathering({55, 44});
+  EXPECT_GE(quality(scene, camera, settings), 42.0);
+  settings.lighting = Lighting{.lights = {{.place = {0.4, 1.0, 0.3}}}};
+  EXPECT_GE(quality(scene, camera, settings), 35.0);
+}
+
+}  // namespace
+}  // namespace freevoxels
