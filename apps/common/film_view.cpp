@@ -29,7 +29,7 @@ Outline outlineOf(const SceneDescription& description, const std::string& input)
     const Volume volume = bakedOutline(*file);
     outline.corners = boxOf(volume).points;
     outline.voxels = volume.activeVoxels;
-  } else if (!proceduralName(input) && scene.classification.channels.empty()) {
+  } else if (!proceduralName(input) && !fvx::isFvx(input) && scene.classification.channels.empty()) {  // else it has to be read
     const auto extent = extentOfVdb(input, scene.input.grid.value_or(""),
                                     {.temperature = scene.emission.grid(), .albedo = std::nullopt, .mayBeMissing = true});
     if (!extent) return outline;

@@ -8,6 +8,7 @@
 #include "engine/core/machine.h"
 #include "engine/description/scene_description.h"
 #include "engine/description/text_values.h"
+#include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/procedural.h"
 
@@ -31,6 +32,28 @@ std::string clipText(const VoxelBox& box) {
 
 std::string clipText(const ClipPlane& plane) {
   return numberText(plane.point) + "," + numberText(plane.normal);
+}
+
+/// Fails unless the box has a voxel of a volume of this size.
+void checkClipBox(const VoxelBox& box, glm::ivec3 size) {
+  if (glm::any(glm::greaterThanEqual(box.first, size)))
+    fail(ErrorKind::Usage, "{} has no voxel of the volume's box, which has {} x {} x {}", Parameter("clip-box", clipText(box)), size.x,
+         size.y, size.z);
+}
+
+/// A part of a baked volume at its full resolution.
+Volume openClippedBaked(const InputDescription& input, std::uint64_t maximumVoxels, const Progress& progress) {
+  const auto file = std::make_shared<const fvx::FvxFile>(input.volume);
+  if (!input.clipBox) return input.clip(openBaked(file, maximumVoxels, 0, progress));
+  const glm::ivec3 size = file->dimensions(0);
+  checkClipBox(*input.clipBox, size);
+  const glm::u64vec3 extent(glm::min(input.clipBox->last, size - 1) - input.clipBox->first + 1);
+  if (const std::uint64_t voxels = extent.x * extent.y * extent.z; voxels > maximumVoxels)
+    fail(ErrorKind::OutOfMemory, "{} has {} voxels, and {} fit: give a smaller one", Parameter("clip-box", clipText(*input.clipBox)),
+         voxels, maximumVoxels);
+  Volume part = readBakedPart(file, *input.clipBox);
+  part.isPart = true;
+  return input.clip(std::move(part));
 }
 
 }  // namespace
@@ -82,22 +105,20 @@ void InputDescription::check() const {
     fail(ErrorKind::Usage, "{} is empty: give the smaller coordinates first", Parameter("clip-box", clipText(*clipBox)));
   if (clipPlane && glm::length(clipPlane->normal) < 1e-30)
     fail(ErrorKind::Usage, "{} has a normal of length 0: give one such as 1,0,0", Parameter("clip-plane", clipText(*clipPlane)));
-  if ((clipBox || clipPlane) && isBaked)
-    fail(ErrorKind::Usage, "{} does not apply to a baked volume such as '{}': clip the volume that it is baked of",
-         Parameter(clipBox ? "clip-box" : "clip-plane"), volume);
   if (grid && isProcedural) fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("grid"), volume);
   if (resolution && !isProcedural)
     fail(ErrorKind::Usage, "{} is for procedural:NAME, and '{}' has the resolution of its grid", Parameter("resolution"), volume);
 }
 
 std::shared_ptr<const fvx::FvxFile> InputDescription::baked() const {
-  if (proceduralName(volume) || !fvx::isFvx(volume)) return nullptr;
+  if (isClipped() || proceduralName(volume) || !fvx::isFvx(volume)) return nullptr;
   return std::make_shared<const fvx::FvxFile>(volume);
 }
 
 Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& what, int level, const Progress& progress) const {
   const std::optional<std::string> name = proceduralName(volume);
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
+  if (!name && fvx::isFvx(volume)) return openClippedBaked(*this, maximumVoxels, progress);
   if (!name) {
     ReadRequest request = what;
     request.grid = grid.value_or("");
@@ -118,11 +139,10 @@ Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& wh
 }
 
 Volume InputDescription::clip(Volume whole) const {
-  const glm::ivec3 size = whole.dimensions;
-  if (clipBox && !whole.isPart && glm::any(glm::greaterThanEqual(clipBox->first, size)))
-    fail(ErrorKind::Usage, "{} has no voxel of the volume's box, which has {} x {} x {}", Parameter("clip-box", clipText(*clipBox)), size.x,
-         size.y, size.z);
-  if (clipBox && !whole.isPart) whole = clippedVolume(whole, *clipBox);
+  if (clipBox && !whole.isPart) {
+    checkClipBox(*clipBox, whole.dimensions);
+    whole = clippedVolume(whole, *clipBox);
+  }
   if (!clipPlane) return whole;
   const bool hadVoxels = whole.activeVoxels > 0;
   whole = clippedVolume(whole, *clipPlane);

@@ -60,11 +60,12 @@ struct InputDescription {
   void check() const;
   /// The part of a volume in the clip box and behind the clip plane. Fails if there is none.
   Volume clip(Volume whole) const;
+  bool isClipped() const { return clipBox || clipPlane; }
   /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
   /// temperatures and albedos. If the box of a baked volume is too large at `level` of its octree, the finest level that fits is
   /// opened, with a warning. `what`: more grids, labels and channels; the rest of it is that of the input. `progress` may abandon it.
   Volume open(std::uint64_t maximumVoxels, const ReadRequest& what = {}, int level = 0, const Progress& progress = {}) const;
-  /// Null where the volume is not a baked one.
+  /// Null where the volume is not a baked one, and where it is clipped, so that it is read into memory.
   std::shared_ptr<const fvx::FvxFile> baked() const;
 
   bool operator==(const InputDescription&) const = default;

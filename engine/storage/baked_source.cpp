@@ -70,6 +70,12 @@ std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int 
   return result;
 }
 
+void checkFitsInMemory(const FvxFile& file, std::uint64_t bricks, const char* remedy) {
+  if (const std::uint64_t bytes = bricks * sizeof(ScalarBricks::Brick); bytes > machineMemoryBytes() / 4 * 3)
+    fail(ErrorKind::OutOfMemory, "'{}' takes {} MiB in memory, and this machine has {} MiB: {}", file.path().string(), bytes >> 20,
+         machineMemoryBytes() >> 20, remedy);
+}
+
 }  // namespace
 
 BakedSource::BakedSource(std::shared_ptr<const FvxFile> file, int finest) : file_(std::move(file)), finest_(finest) {
@@ -105,11 +111,22 @@ std::shared_ptr<const VolumeSource> bakedSource(const std::shared_ptr<const FvxF
   if (!reads) return std::make_shared<const BakedSource>(file, finest);
   std::uint64_t bricks = 0;
   for (const ChunkEntry& chunk : file->chunks(Channel::Scalars, finest)) bricks += std::uint64_t(chunk.bricks());
-  if (const std::uint64_t bytes = bricks * sizeof(ScalarBricks::Brick); bytes > machineMemoryBytes() / 4 * 3)
-    fail(ErrorKind::OutOfMemory,
-         "'{}' takes {} MiB in memory, and this machine has {} MiB: draw it as it was baked, which reads parts of it",
-         file->path().string(), bytes >> 20, machineMemoryBytes() >> 20);
+  checkFitsInMemory(*file, bricks, "draw it as it was baked, which reads parts of it");
   return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(readBaked(file, finest, progress)));
+}
+
+Volume readBakedPart(const std::shared_ptr<const FvxFile>& file, const VoxelBox& box) {
+  constexpr int n = ScalarBricks::kEdge;
+  const BakedSource source(file);
+  const glm::ivec3 size = source.outline(0).dimensions;
+  const VoxelBox part{glm::max(box.first, 0), glm::min(box.last, size - 1)};
+  const VoxelRange bricks{part.first / n * n, glm::min((part.last / n + 1) * n, size)};
+  std::uint64_t count = 0;
+  for (const ChunkPart& chunk : chunksOf(*file, Channel::Scalars, 0, bricks)) count += chunk.bricks.size();
+  checkFitsInMemory(*file, count, "draw a smaller part of it");
+  Volume volume = source.read(0, bricks);
+  volume.indexOrigin += bricks.first;
+  return clippedVolume(volume, VoxelBox{part.first - bricks.first, part.last - bricks.first});
 }
 
 }  // namespace freevoxels

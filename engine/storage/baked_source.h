@@ -5,6 +5,7 @@
 #include <vector>
 
 #include "engine/storage/fvx_file.h"
+#include "engine/volume/coarse_volume.h"
 #include "engine/volume/volume_source.h"
 
 namespace freevoxels {
@@ -32,5 +33,9 @@ class BakedSource : public VolumeSource {
 /// `progress` may abandon it.
 std::shared_ptr<const VolumeSource> bakedSource(const std::shared_ptr<const fvx::FvxFile>& file, int finest, bool reads,
                                                 const Progress& progress = {});
+
+/// The voxels of a box, which is cut to the volume's and must then have one, as clippedVolume has them of the whole: no others are read.
+/// Fails with ErrorKind::OutOfMemory where this machine has too little, and as BakedSource::read() does.
+Volume readBakedPart(const std::shared_ptr<const fvx::FvxFile>& file, const VoxelBox& box);
 
 }  // namespace freevoxels

@@ -29,6 +29,17 @@ TEST_F(BakeCommand, KeptScalarsDrawTheSameImageToTheBit) {
   }
 }
 
+TEST_F(BakeCommand, APartOfABakedVolumeIsThatOfItsVolume) {
+  expectSuccess(run("bake procedural:cloud @a.fvx --resolution 64 --keep-scalars --quiet"));
+  for (const std::string part : {"--clip-box 3,20,11,50,99,40", "--clip-box 3,20,11,50,99,40 --clip-plane 0,0,0,1,1,0"}) {
+    const std::string options = " --size 40x30 --density-scale 20 --quiet --float " + part;
+    expectSuccess(run("render procedural:cloud @original.exr --resolution 64" + options));
+    expectSuccess(run("render @a.fvx @baked.exr" + options));
+    EXPECT_EQ(largestPixelDifference(image("baked.exr"), image("original.exr")), 0.0) << part;
+  }
+  expectCleanRefusal("render @a.fvx @none.exr --clip-box 64,0,0,70,9,9", ExitCode::Usage, "--clip-box");
+}
+
 TEST_F(BakeCommand, SixteenBitsDrawTheSameImageTo60Decibels) {
   struct Case {
     std::string volume, classification;

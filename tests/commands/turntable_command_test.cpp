@@ -50,6 +50,18 @@ TEST_F(TurntableCommand, WritesEveryFrameOfEveryOutputAndPrintsThem) {
   EXPECT_NE(readExr(folder / "a_01.exr").pixels, readExr(folder / "a_02.exr").pixels);
 }
 
+TEST_F(TurntableCommand, EachFrameHasItsOwnHoldout) {
+  turn("@whole_#.exr --frames 2 --aov depth");
+  turn("@front_#.exr --frames 2 --holdout @whole_#.exr");
+  for (const char* frame : {"0", "1"}) {
+    const float whole = readExr(folder / fmt::format("whole_{}.exr", frame)).pixels[18 * 48 + 24].a;
+    const float front = readExr(folder / fmt::format("front_{}.exr", frame)).pixels[18 * 48 + 24].a;
+    EXPECT_GT(front, 0.1f * whole) << frame;
+    EXPECT_LT(front, 0.9f * whole) << frame;
+  }
+  expectCleanRefusal("turntable procedural:cloud @none_#.png --frames 2 --size 48x36 --holdout @whole_0.exr", ExitCode::Usage, "--holdout");
+}
+
 TEST_F(TurntableCommand, NumbersGrowBeyondTheirPlace) {
   turn("@#.png --frames 11 --quiet");
   EXPECT_TRUE(std::filesystem::exists(folder / "0.png"));

@@ -1,11 +1,14 @@
 // Rays that end at the depths of surfaces from elsewhere: closed forms, and the oracle with the same depths.
 
+#include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 
 #include "engine/renderer.h"
 #include "engine/validation/stage_frames.h"
 #include "tests/device/gather_fixture.h"
+#include "tests/refusal.h"
 
 namespace freevoxels {
 namespace {
@@ -104,6 +107,103 @@ TEST_F(HoldoutTest, ALitScanInFrontOfSurfacesMatchesTheOracle) {
   EXPECT_GE(quality(scene, camera, settings), 42.0);
   settings.lighting = Lighting{.lights = {{.place = {0.4, 1.0, 0.3}}}};
   EXPECT_GE(quality(scene, camera, settings), 35.0);
+}
+
+TEST_F(HoldoutTest, FlamesInFrontOfSurfacesMatchTheOracle) {
+  Scene scene{.volume = makeProcedural("fire", 32), .classification = {.densityScale = 4.0, .emission = Emission{.strength = 5.0}}};
+  FrameSettings settings = gathering({40, 32});
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.25, {});
+  EXPECT_GE(quality(scene, camera, settings), 40.0);
+  settings.lighting = Lighting{.lights = {{.place = {0.4, 1.0, 0.3}}}, .scattering = 1};
+  EXPECT_GE(quality(scene, camera, settings), 38.0);
+}
+
+/// Whole, cube by cube and as shares it is one image.
+TEST_F(HoldoutTest, CubesAndSharesAreTheWholeImage) {
+  const Scene scene = cloud(70);
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.25, {});
+  FrameSettings settings{.size = {61, 47}, .depth = true};
+  settings.holdout = ballAndPlane(camera, settings.size, middleOf(scene.volume), 0.2);
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  const Image whole = renderer.render(camera, settings);
+  FixedSums sums = renderer.renderShares(camera, settings, {.index = 0, .count = 2});
+  sums += renderer.renderShares(camera, settings, {.index = 1, .count = 2});
+  const Image shared = resolveSums(sums, true);
+  EXPECT_LE(largestPixelDifference(shared, whole), 2e-5);
+  for (std::size_t i = 0; i < whole.depth.size(); ++i)
+    if (settings.holdout->depths[i] < kNothing && std::isfinite(whole.depth[i])) EXPECT_LE(whole.depth[i], settings.holdout->depths[i] * 1.0001f);
+  settings.gather().sampleTolerance = 0.0f;  // as cubes have every ray marched
+  settings.lod = 0.0f;
+  const Image marched = renderer.render(camera, settings);
+  renderer.drawInCubes();
+  EXPECT_GE(psnr(renderer.render(camera, settings), marched), 90.0);
+}
+
+/// Two clouds through each other.
+TEST_F(HoldoutTest, SeveralVolumesInFrontOfSurfacesMatchTheOracle) {
+  const Scene one = cloud(33);
+  Volume moved = one.volume;
+  moved.indexToWorld[3] += glm::dvec4(0.21, 0.13, -0.08, 0.0);
+  const std::array<const Volume*, 2> volumes{&one.volume, &moved};
+  std::vector<SceneVolume> scene;
+  std::vector<PlacedMedium> placed;
+  for (const Volume* volume : volumes) {
+    scene.push_back({.source = std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(*volume)), .classification = one.classification});
+    placed.push_back({volume, &one.classification});
+  }
+  const Camera camera = framingCamera(one.volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings = gathering({40, 40});
+  settings.holdout = ballAndPlane(camera, settings.size, middleOf(one.volume), 0.2);
+  const Oracle oracle =
+      renderOracle(placed, camera, {.size = settings.size, .tolerance = 4e-3, .maximumSamples = 8, .holdout = settings.holdout});
+  EXPECT_GE(psnr(Renderer(device(), scene, {}).render(camera, settings), oracle.image), 48.0);
+}
+
+/// The depth that one render writes is a holdout of another: a thin opaque shell holds out all that is behind it.
+TEST_F(HoldoutTest, DepthOfOneImageHoldsOutAnother) {
+  const Scene scene = cloud(33);
+  const glm::ivec3 n(33);
+  const Volume ball = makeVolume(n, scene.volume.indexToWorld, [n](int x, int y, int z) {
+    return glm::length(glm::dvec3(x, y, z) - 0.5 * glm::dvec3(n - 1)) < 8.0 ? 1.0 : 0.0;
+  });
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings = gathering({48, 48});
+  settings.depth = true;
+  const Image opaque = Renderer(device(), ball, {.densityScale = 1e4}, {}).render(camera, settings);
+  const double radius = 8.0 * scene.volume.voxelSize();
+  const auto expected = ballAndPlane(camera, settings.size, middleOf(ball), radius);
+  EXPECT_NEAR(opaque.depth[24 * 48 + 24], expected->depths[24 * 48 + 24], scene.volume.voxelSize());
+  settings.holdout = std::make_shared<const Holdout>(Holdout{.size = settings.size, .depths = opaque.depth});
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  EXPECT_GE(psnr(renderer.render(camera, settings), oracleOf(scene, camera, settings)), 48.0);
+}
+
+/// Edges lie between pixels, whatever the size of voxels: beyond them nothing changes.
+TEST_F(HoldoutTest, PixelsDoNotDependOnTheDepthsOfOthers) {
+  const Scene scene = cloud(20);
+  const Camera camera = framingCamera(scene.volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings = gathering({48, 48});
+  settings.gather().sampleTolerance = 0.0f;
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  settings.holdout = holdout(settings.size, [](glm::ivec2) { return kNothing; });
+  const Image open = renderer.render(camera, settings);
+  settings.holdout = holdout(settings.size, [](glm::ivec2 pixel) { return (pixel.x + pixel.y) % 2 == 0 ? 0.0f : kNothing; });
+  const Image checkered = renderer.render(camera, settings);
+  for (int i = 0; i < 48 * 48; ++i)
+    EXPECT_EQ(checkered.pixels[std::size_t(i)], (i % 48 + i / 48) % 2 == 0 ? glm::vec4(0.0f) : open.pixels[std::size_t(i)]);
+  settings.holdout = nullptr;
+  EXPECT_GE(psnr(open, renderer.render(camera, settings)), 48.0);
+}
+
+TEST_F(HoldoutTest, WhatHasNoRaysOrAnotherSizeIsRefused) {
+  const Scene scene = cloud(8);
+  FrameSettings settings = gathering({4, 5});
+  Renderer renderer(device(), scene.volume, scene.classification, {});
+  settings.holdout = holdout({5, 4}, [](glm::ivec2) { return kNothing; });
+  test::expectRefusal([&] { renderer.render({}, settings); }, ErrorKind::Usage, {"5x4 pixels", "4x5"});
+  settings.size = {5, 4};
+  settings.method = SplatSettings{};
+  test::expectRefusal([&] { renderer.render({}, settings); }, ErrorKind::Usage, {"holdout", "splats"});
 }
 
 }  // namespace

@@ -44,6 +44,21 @@ TEST(Library, HomogeneousBoxIsTheLawOfBeerAndLambert) {
   EXPECT_LT(image.depth[20 + 40 * 20], 100.0f);
 }
 
+TEST(Library, RaysEndAtTheDepthsOfAHoldout) {
+  const std::vector<float> ones(20 * 20 * 12, 1.0f);
+  v1::Renderer renderer(v1::Volume::copy(ones, {20, 20, 12}, {.spacing = {1.0, 1.0, 2.0}}), kAlongZ);
+  const std::string scene = R"({"density-scale": 0.1, "unlit": true})";
+  std::vector<float> depths(40 * 40, 100.0f - 23.0f + 10.0f);  // 10 behind the first face
+  const v1::Image image = renderer.render(scene, false, {}, {40, 40, depths});
+  EXPECT_NEAR(image.pixels[4 * (20 + 40 * 20) + 3], 1.0 - std::exp(-0.1 * 10), 2e-3);
+  EXPECT_EQ(renderer.submit(scene, false, {}, {40, 40, depths}).image().pixels, image.pixels);
+  EXPECT_NEAR(renderer.render(scene).pixels[4 * (20 + 40 * 20) + 3], 1.0 - std::exp(-0.1 * 24), 2e-3);
+  expectRefused(v1::ErrorKind::Input, "40x39", [&] { renderer.render(scene, false, {}, {40, 39, depths}); });
+  expectRefused(v1::ErrorKind::Usage, "holdout", [&] { renderer.render(R"({"size": 9})", false, {}, {40, 40, depths}); });
+  depths[7] = -1.0f;
+  expectRefused(v1::ErrorKind::Input, "pixel (7, 0)", [&] { renderer.render(scene, false, {}, {40, 40, depths}); });
+}
+
 TEST(Library, FramesOfOneRendererAreThoseOfSeparateOnes) {
   const std::string base = R"({"size": [48, 40], "density-scale": 20})";
   v1::Renderer shared(cloud(), base);

@@ -42,7 +42,7 @@ class Files:
 
     def options(self, case):
         """The case's options, with the names of files where these are."""
-        return {name: self.path(value) if name == "environment" else value for name, value in case["options"].items()}
+        return {name: self.path(value) if name in ("environment", "holdout") else value for name, value in case["options"].items()}
 
 
 class CommandLine(Files):

@@ -81,7 +81,7 @@ class MatrixTest(unittest.TestCase):
         for name, kind in TABLE["files"]["written"].items():
             write(cls.files / name, kind)
         for command, *words in TABLE["files"]["made"]:
-            run([command, *(str(cls.files / word) if word.endswith((".vdb", ".fvx")) else word for word in words), "--quiet"])
+            run([command, *(str(cls.files / word) if word.endswith((".vdb", ".fvx", ".exr")) else word for word in words), "--quiet"])
 
     def outcome(self, driver, number, case):
         """What a driver draws, or the sentence with which it refuses."""

@@ -32,6 +32,24 @@ class RenderTest(unittest.TestCase):
             alpha = 1 - math.exp(-extinction * 12 * 2)
             np.testing.assert_allclose(image[20, 20], [0.8 * alpha, 0.5 * alpha, 0.2 * alpha, alpha], rtol=2e-3)
 
+    def test_rays_end_at_the_depths_of_a_holdout(self):
+        box, options = np.ones((12, 20, 20), "float32"), dict(spacing=(1, 1, 2), density_scale=0.1, unlit=True, **ALONG_Z)
+        depth = np.full((40, 40), np.inf)
+        depth[:, :20] = 100 - 23 + 10  # 10 behind the first face
+        image = freevoxels.render(box, holdout=depth, **options)
+        np.testing.assert_allclose(image[20, [10, 19, 20, 30], 3], 1 - np.exp(-0.1 * np.array([10, 10, 24, 24])), rtol=2e-3)
+        renderer = freevoxels.Renderer(freevoxels.Volume(box, spacing=(1, 1, 2)), density_scale=0.1, unlit=True, **ALONG_Z)
+        np.testing.assert_array_equal(renderer.render(holdout=depth.astype("float32")), image)
+        self.assertGreater(renderer.render()[20, 10, 3], image[20, 10, 3])
+        with tempfile.TemporaryDirectory() as folder:
+            freevoxels.save(f"{folder}/depth.exr", image, depth=depth.astype("float32"))
+            np.testing.assert_array_equal(renderer.render(holdout=pathlib.Path(folder) / "depth.exr"), image)
+        for wrong, kind in ((depth[:-1], freevoxels.UsageError), (depth[0], freevoxels.InputError), (-depth, freevoxels.InputError),
+                            (depth * np.nan, freevoxels.InputError)):
+            with self.assertRaises(kind) as refusal:
+                renderer.render(holdout=wrong)
+            self.assertIn("holdout", str(refusal.exception))
+
     def test_axes_are_z_y_x_and_rows_begin_at_the_top(self):
         corner = np.zeros((4, 20, 20), "float32")
         corner[:, 15:, :5] = 1  # large y, small x: the upper left of a view along -z

@@ -307,6 +307,25 @@ TEST(BakedVolume, ReadersOfBoxesReadTheirPartOfTheFileAlone) {
   }
 }
 
+/// The box begins and ends within bricks, and beyond the volume.
+TEST(BakedVolume, APartThatIsReadIsThatOfTheWhole) {
+  const test::TemporaryFolder folder;
+  const Volume whole = test::bakedAndRead(folder / "a.fvx", test::volumeOfAllChannels(), kDense, {.keepScalars = true});
+  const auto file = std::make_shared<const FvxFile>(folder / "a.fvx");
+  for (const VoxelBox& box : {VoxelBox{{3, 9, 8}, {44, 99, 20}}, VoxelBox{{0, 0, 0}, {99, 99, 99}}, VoxelBox{{69, 40, 36}, {70, 41, 37}}}) {
+    const Volume part = readBakedPart(file, box), expected = clippedVolume(whole, box);
+    EXPECT_EQ(part.dimensions, expected.dimensions);
+    EXPECT_EQ(part.indexToWorld, expected.indexToWorld);
+    EXPECT_EQ(part.indexOrigin, expected.indexOrigin);
+    EXPECT_EQ(part.activeVoxels, expected.activeVoxels);
+    EXPECT_EQ(part.minimum, expected.minimum);
+    EXPECT_EQ(part.maximum, expected.maximum);
+    test::expectSameVoxels(part.scalars, expected.scalars);
+    test::expectSameVoxels(part.temperature->values, expected.temperature->values);
+    for (std::size_t c = 0; c < 3; ++c) test::expectSameVoxels(part.albedo->values[c], expected.albedo->values[c]);
+  }
+}
+
 TEST(BakedVolume, AVolumeThatIsTooLongIsRefused) {
   const test::TemporaryFolder folder;
   const StreamedVolume volume{.outline = {.source = "long", .dimensions = {8193, 1, 1}}, .content = {.cells = Cells(glm::ivec3(1))}};
