@@ -39,8 +39,12 @@ void writeChannels(const std::filesystem::path& file, const std::vector<std::str
 TEST(Holdout, DepthIsZOrThatOfALayerOrTheOnlyChannel) {
   const TemporaryFolder folder;
   const auto file = folder / "a.exr";
-  for (const auto& [names, first] : std::vector<std::pair<std::vector<std::string>, float>>{
-           {{"R", "G", "B", "Z"}, 31.0f}, {{"Z"}, 1.0f}, {{"V"}, 1.0f}, {{"View Layer.Normal.Z", "View Layer.Depth.Z", "R"}, 11.0f}, {{"P.Z", "depth.Z"}, 11.0f}}) {
+  for (const auto& [names, first] :
+       std::vector<std::pair<std::vector<std::string>, float>>{{{"R", "G", "B", "Z"}, 31.0f},
+                                                               {{"Z"}, 1.0f},
+                                                               {{"V"}, 1.0f},
+                                                               {{"View Layer.Normal.Z", "View Layer.Depth.Z", "R"}, 11.0f},
+                                                               {{"P.Z", "depth.Z"}, 11.0f}}) {
     writeChannels(file, names);
     const auto holdout = readHoldout(file);
     EXPECT_EQ(holdout->size, glm::ivec2(2, 1));
@@ -58,8 +62,8 @@ TEST(Holdout, ThereIsNothingBesideThePartThatAFileHas) {
   writeExr(folder / "a.exr", part, {});
   const auto holdout = readHoldout(folder / "a.exr");
   EXPECT_EQ(holdout->size, glm::ivec2(4, 3));
-  EXPECT_EQ(holdout->depths, (std::vector<float>{kNothing, kNothing, kNothing, kNothing, kNothing, kNothing, kNothing, kNothing, kNothing, 3.0f,
-                                                 1e10f, kNothing}));
+  EXPECT_EQ(holdout->depths, (std::vector<float>{kNothing, kNothing, kNothing, kNothing, kNothing, kNothing, kNothing, kNothing, kNothing,
+                                                 3.0f, 1e10f, kNothing}));
   test::expectRefusal([&] { checkHoldoutSize(*holdout, {4, 4}); }, ErrorKind::Usage, {"has 4x3 pixels, and that to be drawn 4x4"});
 }
 
