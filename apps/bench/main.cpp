@@ -234,7 +234,10 @@ int main(int argc, char** argv) {
   app.callback([&] {
     if (!json.empty()) checkWritable(json);
     for (const std::string& input : extent.inputs)
-      if (!proceduralName(input)) listVdb(input);  // refuses a file that is missing or no volume before minutes of work
+      if (const InputDescription volume{.volume = input}; volume.kind() == VolumeKind::OpenVdb)
+        listVdb(input);  // refuses a file that is missing or no volume before minutes of work
+      else if (volume.kind() == VolumeKind::Scan)
+        readScanHeader(input, volume.scanRequest(kMaxNumberedVoxels));
     device.withDevice([&](const Device& opened) {
       if (cluster) return measureCluster(opened, extent.quick, json);
       const Results results = measure(opened, extent, wanted);

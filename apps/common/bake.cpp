@@ -25,7 +25,7 @@ constexpr std::uint64_t kMaxBytesInMemory = std::uint64_t(1) << 30;
 /// Whether a file says with which value of the field it was baked.
 bool isBaked(const SceneField& field) {
   return field.section == "classification" || field.section == "emission" || field.name == "volume" || field.name == "resolution" ||
-         field.name == "grid";
+         field.name == "grid" || field.name == "raw" || field.name == "series" || field.name == "time-step" || field.name == "spacing";
 }
 
 /// A pointer to a volume that somebody else owns.
@@ -60,7 +60,7 @@ BakeSettings Baker::settings(const Volume& volume, const Classification& classif
   const Scene scene{.volume = borrowed(volume), .classification = classification};
   nlohmann::ordered_json json{{"program", "freevoxels " + programVersion()}, {"volume", volume.source}};
   for (const auto& [name, value] : optionMap(optionsOf(scene_.resolved(scene), isBaked))) json["options"][name] = value;
-  if (const std::string& file = scene_.input.volume; !file.empty() && !proceduralName(file)) {
+  if (const std::string& file = scene_.input.volume; std::filesystem::is_regular_file(file)) {
     json["file_bytes"] = std::filesystem::file_size(file);
     json["file_xxh3_64"] = fmt::format("{:016x}", fvx::hashOfFile(file));
   }
@@ -108,7 +108,7 @@ void Baker::bakeProcedural(const std::string& name) const {
 }
 
 bool Baker::bakeParts() const {
-  if (fvx::isFvx(scene_.input.volume) || !scene_.classification.channels.empty()) return false;
+  if (scene_.input.kind() != VolumeKind::OpenVdb || !scene_.classification.channels.empty()) return false;
   const std::unique_ptr<const VdbParts> parts =
       VdbParts::open(scene_.input.volume,
                      {.grid = scene_.input.grid.value_or(""),

@@ -29,7 +29,11 @@ Outline outlineOf(const SceneDescription& description, const std::string& input)
     const Volume volume = bakedOutline(*file);
     outline.corners = boxOf(volume).points;
     outline.voxels = volume.activeVoxels;
-  } else if (!proceduralName(input) && !fvx::isFvx(input) && scene.classification.channels.empty()) {  // else it has to be read
+  } else if (const VolumeKind kind = scene.input.kind(); kind == VolumeKind::Scan) {
+    const ScanHeader header = readScanHeader(input, scene.input.scanRequest(0));
+    outline.voxels = header.samples();
+    if (!scene.input.isClipped()) outline.corners = boxOf(Volume{.dimensions = header.dimensions, .indexToWorld = header.indexToWorld}).points;
+  } else if (kind == VolumeKind::OpenVdb && scene.classification.channels.empty()) {
     const auto extent = extentOfVdb(input, scene.input.grid.value_or(""),
                                     {.temperature = scene.emission.grid(), .albedo = std::nullopt, .mayBeMissing = true});
     if (!extent) return outline;
@@ -82,7 +86,7 @@ double powerOf(const Volume& volume) {
 void refuseMissingDensity(const std::string& name, std::span<const std::string> inputs) {
   const auto mayHave = [&](const std::string& input) {
     bool has = false;
-    const bool isRead = attempt([&] { has = proceduralName(input) || fvx::isFvx(input) || hasGrid(input, name); });
+    const bool isRead = attempt([&] { has = InputDescription{.volume = input}.kind() != VolumeKind::OpenVdb || hasGrid(input, name); });
     return has || !isRead;
   };
   if (std::ranges::none_of(inputs, mayHave))

@@ -11,10 +11,19 @@ namespace {
 
 const std::vector<OptionHelp> kVolumeHelp{
     {"volume",
-     "OpenVDB file, baked volume (.fvx), or procedural:NAME ('freevoxels generate --list' has the names); may be left "
+     "OpenVDB file, scan (.nrrd, .nii.gz, .mha, .vti, .vtk, .tif, .raw, a DICOM folder or file), baked volume (.fvx), or procedural:NAME "
+     "('freevoxels generate --list' has the names); may be left "
      "out where a --scene has it"},
     {"resolution", fmt::format("Voxels of a procedural volume, one number for a cube [{}]", kDefaultResolution)},
-    {"grid", "Grid of the file, NAME[k] if several have the name [density, smoke or a like name, or the only float grid]"},
+    {"grid",
+     "Grid of the file, NAME[k] if several have the name; of a .vti the array [density, smoke or a like name, or the only float grid]"},
+    {"raw",
+     "The file has values without a header: their number along x, y and z, and their type, u8, i8, u16, i16, u32, i32, u64, i64, f32 or "
+     "f64 [as in "
+     "the name NAME_256x256x128_uint16.raw]"},
+    {"series", "Series of a DICOM folder, by its UID [the only one]"},
+    {"time-step", "Time step of a scan with several, from 0 [0]"},
+    {"spacing", "Millimetres between the voxels of a scan along the axes of its box [as its file says]"},
     {"no-data", "Value of voxels that hold no data [of scans the value that they are filled up with around what was measured]"},
     {"clip-box",
      "Draw only these voxels: the first and the last ones along x, y and z, inclusive, in the volume's box, whose voxels "

@@ -132,7 +132,7 @@ void SceneOptions::takeScene(const std::string& defaultEnding) {
     volume.clear();
     options_.at(&sceneField("volume"))->clear();
   } else if (isImage(volume)) {
-    fail(ErrorKind::Usage, "IN is required: '{}' is an image, which OUT is; name an OpenVDB file before it, or procedural:NAME", volume);
+    fail(ErrorKind::Usage, "IN is required: '{}' is an image, which OUT is; name a volume before it, a file or procedural:NAME", volume);
   }
   if (files.empty() && !defaultEnding.empty()) {
     const std::string& named = !volume.empty() || !file ? volume : *file;

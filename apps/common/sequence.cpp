@@ -10,6 +10,7 @@
 #include "apps/common/frame_names.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_description.h"
+#include "engine/volume/scan_file.h"
 
 namespace freevoxels {
 
@@ -165,8 +166,8 @@ void takeMost(Sequence& most, const std::string& before, const std::string& name
 std::optional<Sequence> sequenceAround(const std::string& file) {
   Sequence most;
   const std::size_t start = file.rfind('/') + 1;  // 0 without a folder
-  const std::string extension = fs::path(file).extension().string();
-  takeMost(most, file.substr(0, start), file.substr(start, file.size() - extension.size() - start), extension);
+  const std::string stem = stemOf(file);
+  takeMost(most, file.substr(0, start), stem, file.substr(start + stem.size()));
   if (most.files.size() < 2 && start > 1) {
     const std::size_t folder = file.rfind('/', start - 2) + 1;
     takeMost(most, file.substr(0, folder), file.substr(folder, start - 1 - folder), file.substr(start - 1));
@@ -195,7 +196,7 @@ std::optional<std::string> holdoutOfTurn(const CameraDescription& camera, int fr
 }
 
 std::string nameOfVolume(const std::string& volume) {
-  return proceduralName(volume).value_or(fs::path(volume).stem().string());
+  return proceduralName(volume).value_or(stemOf(volume));
 }
 
 NumberedVolumes findVolumes(std::span<const std::string> names, const std::optional<std::string>& frames) {

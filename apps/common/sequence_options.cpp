@@ -19,7 +19,8 @@ namespace fs = std::filesystem;
 /// Whether a word behind IN is another volume. What is neither a volume nor an image is left to be refused as an image.
 bool isVolume(const std::string& word) {
   std::error_code unreadable;
-  return !isImage(word) && (proceduralName(word) || word.ends_with(".vdb") || isPattern(word) || fs::is_regular_file(word, unreadable));
+  return !isImage(word) && (proceduralName(word) || word.ends_with(".vdb") || hasScanEnding(word) || isPattern(word) ||
+                            fs::is_regular_file(word, unreadable));
 }
 
 /// Takes the volumes out of OUT.

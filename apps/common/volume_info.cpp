@@ -1,10 +1,14 @@
 #include "apps/common/volume_info.h"
 
+#include <fmt/format.h>
+
 #include <algorithm>
+#include <array>
 #include <limits>
 
 #include "apps/common/baked_info.h"
 #include "engine/core/error.h"
+#include "engine/core/printable.h"
 #include "engine/renderer.h"
 #include "engine/volume/occupied_count.h"
 
@@ -30,7 +34,13 @@ GridInfo describeVolume(const Volume& volume) {
   grid.maximum = volume.maximum;
   grid.memoryBytes = grid.hostBytes = volume.scalars.bytes();
   std::vector<bool> holding;
-  for (const float value : denseScalars(volume)) holding.push_back(value > 0.0f);
+  holding.reserve(volume.voxelCount());
+  std::vector<float> row(std::size_t(volume.dimensions.x));
+  for (int z = 0; z < volume.dimensions.z; ++z)
+    for (int y = 0; y < volume.dimensions.y; ++y) {
+      volume.scalars.copyRow(y, z, row);
+      for (const float value : row) holding.push_back(value > 0.0f);
+    }
   grid.storedBlocks = countOccupiedBlocks(volume.dimensions, std::move(holding));
   return grid;
 }
@@ -61,9 +71,20 @@ std::vector<std::string> usesOf(const GridInfo& grid) {
 
 std::vector<GridInfo> gridsOf(const InputDescription& input) {
   input.check();
-  if (proceduralName(input.volume))
-    return {describeVolume(input.open(std::numeric_limits<std::uint64_t>::max()))};
-  return describeVdb(input.volume);
+  const VolumeKind kind = input.kind();
+  if (kind == VolumeKind::OpenVdb) return describeVdb(input.volume);
+  GridInfo grid = describeVolume(input.open(std::numeric_limits<std::uint64_t>::max()));
+  if (kind != VolumeKind::Scan) return {grid};
+  const ScanHeader header = *scanHeaderOf(input);
+  grid.name = header.array.empty() ? "scan" : printable(header.array);
+  grid.valueType = nameOf(header.type);
+  grid.gridClass = "scan";
+  return {grid};
+}
+
+std::optional<ScanHeader> scanHeaderOf(const InputDescription& input) {
+  if (input.kind() != VolumeKind::Scan) return std::nullopt;
+  return readScanHeader(input.volume, input.scanRequest(std::numeric_limits<std::uint64_t>::max()));
 }
 
 namespace {
@@ -99,7 +120,44 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
   return json;
 }
 
+glm::dvec3 spacingOf(const ScanHeader& scan) {
+  glm::dvec3 spacing;
+  for (int axis = 0; axis < 3; ++axis) spacing[axis] = glm::length(glm::dvec3(scan.indexToWorld[axis]));
+  return spacing;
+}
+
+/// Of the axes of the box, of length 1.
+std::array<glm::dvec3, 3> directionsOf(const ScanHeader& scan) {
+  std::array<glm::dvec3, 3> directions;
+  for (int axis = 0; axis < 3; ++axis)
+    directions[std::size_t(axis)] = glm::normalize(glm::dvec3(scan.indexToWorld[axis])) + 0.0;  // -0 becomes 0
+  return directions;
+}
+
+nlohmann::ordered_json toJson(const ScanHeader& scan) {
+  const auto triple = [](const glm::dvec3& v) { return nlohmann::ordered_json{v.x, v.y, v.z}; };
+  nlohmann::ordered_json json{{"format", scan.format}, {"type", nameOf(scan.type)}, {"time_steps", scan.timeSteps}};
+  json["origin"] = triple(glm::dvec3(scan.indexToWorld[3]));
+  json["spacing"] = triple(spacingOf(scan));
+  for (const glm::dvec3& direction : directionsOf(scan)) json["directions"].push_back(triple(direction));
+  if (scan.rescale) json["rescale"] = {scan.rescale->x, scan.rescale->y};
+  return json;
+}
+
 }  // namespace
+
+std::vector<std::string> linesOf(const ScanHeader& scan) {
+  const auto triple = [](const glm::dvec3& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z); };
+  std::vector<std::string> lines{fmt::format("format      {}", scan.format)};
+  if (scan.timeSteps > 1) lines.push_back(fmt::format("time steps  {}", scan.timeSteps));
+  if (scan.rescale) lines.push_back(fmt::format("rescale     values of the file x {:.6g} + {:.6g}", scan.rescale->x, scan.rescale->y));
+  lines.emplace_back("space       millimetres, x towards the left of the patient, y the back, z the head (LPS)");
+  lines.push_back("origin      " + triple(glm::dvec3(scan.indexToWorld[3])));
+  lines.push_back("spacing     " + triple(spacingOf(scan)));
+  const std::array<glm::dvec3, 3> directions = directionsOf(scan);
+  for (std::size_t axis = 0; axis < 3; ++axis) lines.push_back(fmt::format("direction {} {}", "xyz"[axis], triple(directions[axis])));
+  return lines;
+}
 
 std::shared_ptr<const fvx::FvxFile> checkedBaked(const InputDescription& input, bool check) {
   input.check();
@@ -113,6 +171,7 @@ nlohmann::ordered_json volumeInfo(const InputDescription& input, bool check) {
   if (const auto baked = checkedBaked(input, check)) return bakedJson(*baked);
   nlohmann::ordered_json json{{"input", input.volume}, {"grids", nlohmann::ordered_json::array()}};
   for (const GridInfo& grid : gridsOf(input)) json["grids"].push_back(toJson(grid));
+  if (const std::optional<ScanHeader> scan = scanHeaderOf(input)) json["scan"] = toJson(*scan);
   return json;
 }
 

@@ -3,6 +3,7 @@
 
 #include <memory>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -12,8 +13,12 @@
 
 namespace freevoxels {
 
-/// The grids of a volume that is not baked. Reads a procedural one. Fails as describeVdb does.
+/// The grids of a volume that is not baked. Reads a procedural one, and a scan. Fails as describeVdb and readScan do.
 std::vector<GridInfo> gridsOf(const InputDescription& input);
+/// What the header of a scan says; nothing for other volumes.
+std::optional<ScanHeader> scanHeaderOf(const InputDescription& input);
+/// The same for people.
+std::vector<std::string> linesOf(const ScanHeader& scan);
 /// The file of a baked volume, null for others. `check`: all of it is read, and refused where anything is damaged; a volume that is not
 /// baked then fails with ErrorKind::Usage.
 std::shared_ptr<const fvx::FvxFile> checkedBaked(const InputDescription& input, bool check);

@@ -49,8 +49,8 @@ void printTable(const std::vector<GridInfo>& grids) {
 }  // namespace
 
 void InfoCommand::add(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("info", "Show the grids of a file");
-  scene_.addFields(*command, {"volume", "resolution"});
+  CLI::App* command = app.add_subcommand("info", "Show the grids of a file, or what a scan's header says");
+  scene_.addFields(*command, {"volume", "resolution", "raw", "series", "time-step", "spacing"});
   scene_.addFile(*command);
   command->add_flag("--json", json_, "Print JSON for programs");
   command->add_flag("--check", check_, "Read all of a baked volume (.fvx) and refuse it where anything is damaged");
@@ -77,6 +77,8 @@ void InfoCommand::run() {
     if (check_) fmt::print("\nall checksums are right\n");
   } else {
     printTable(gridsOf(input));
+    if (const std::optional<ScanHeader> scan = scanHeaderOf(input))
+      for (const std::string& line : linesOf(*scan)) fmt::print("{}\n", line);
   }
 }
 

@@ -40,7 +40,8 @@ freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> di
   const auto vector = [](const std::array<double, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
   const glm::ivec3 size(x, y, z);
   const glm::dmat4 transform = latticeTransform(vector(placement.spacing), vector(placement.origin));
-  if (channels.empty()) return volumeOfScalars(bricksOf(values, size), transform, false, labels && !labels->isNone() ? &*labels : nullptr);
+  if (channels.empty())
+    return volumeOfScalars(bricksOf(values, size), transform, std::nullopt, "the array", labels && !labels->isNone() ? &*labels : nullptr);
   std::vector<ScalarBricks> ofChannels;
   for (const ChannelStyle& channel : channels)
     ofChannels.push_back(bricksOf(values.subspan(channelNumber(channel, values.size() / voxels) * voxels, voxels), size));

@@ -239,9 +239,9 @@ Volume volumeOfArray(const py::object& array, const py::object& temperature, con
   if (heat && heat->shape != scalars.shape)
     fail(ErrorKind::Input, "{} has the shape {}, and the array has {}: they must be the same", Parameter("temperature"), heat->shapeText(),
          scalars.shapeText());
-  const bool knowsNoData = !placement.noData.is_none() || scalars.mask;
-  Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld, knowsNoData,
-                                  placement.labels && !placement.labels->isNone() ? &*placement.labels : nullptr);
+  const bool knowsNoData = !placement.noData.is_none() || scalars.mask;  // and readArray() has marked the voxels
+  Volume volume = volumeOfScalars(readArray(scalars, noData), placement.indexToWorld, knowsNoData ? std::optional(NoData{}) : std::nullopt,
+                                  "the array", placement.labels && !placement.labels->isNone() ? &*placement.labels : nullptr);
   if (!heat) return volume;
   volume.temperature = TemperatureGrid{.name = "temperature", .values = readArray(*heat, noData)};
   summariseValues(*volume.temperature);

@@ -113,7 +113,8 @@ void refusePlacement(const py::kwargs& keywords, const char* what) {
 void refuseArrayOptions(const py::kwargs& keywords) {
   py::kwargs placement;
   for (const auto& [key, value] : keywords)
-    if (keywordText(key) != "no_data") placement[key] = value;  // which files have as well
+    if (const std::string name = keywordText(key); name != "no_data" && name != "spacing")  // which files have as well
+      placement[key] = value;
   refusePlacement(placement, "a file");
 }
 
@@ -173,30 +174,40 @@ void addVolume(py::module_& module) {
       parameters);
   py::class_<PythonVolume>(module, "Volume", text.c_str())
       .def(py::init(&volumeFromArray), textOfArrays.c_str())
-      .def_static("open", &volumeFromFile, "file"_a = py::none(),
-                  "open(file=None, **kwargs)\n--\n\n"
-                  "Reads an OpenVDB file, or makes 'procedural:NAME'; without a file the volume of a scene. Options: grid, resolution,\n"
-                  "and those of a frame, of which emission=True, temperature_grid and albedo_grid add grids to read. Of a baked\n"
-                  "volume (.fvx) a level of detail is read when a frame needs it.")
-      .def("__repr__", [](const PythonVolume& v) {
-        const glm::ivec3 size = v.describe().dimensions;
-        return fmt::format("<freevoxels.Volume of {}: {} x {} x {} voxels along z, y, x>", printable(v.describe().source), size.z, size.y,
-                           size.x);
-      })
-      .def_property_readonly("shape", [](const PythonVolume& v) {
-        const glm::ivec3 size = v.describe().dimensions;
-        return py::make_tuple(size.z, size.y, size.x);
-      }, "Voxels along z, y and x.")
-      .def_property_readonly("range", [](const PythonVolume& v) { return std::pair(v.describe().minimum, v.describe().maximum); },
-                             "The least and the largest value of the voxels that hold data.")
-      .def_property_readonly("active_voxels", [](const PythonVolume& v) { return v.describe().activeVoxels; },
-                             "How many voxels hold data.")
-      .def_property_readonly("origin", [](const PythonVolume& v) {
-        const glm::dvec3 origin(v.describe().indexToWorld[3]);
-        return py::make_tuple(origin.x, origin.y, origin.z);
-      }, "World position (x, y, z) of the centre of voxel [0, 0, 0].")
-      .def_property_readonly("source", [](const PythonVolume& v) { return fileNameOf(v.describe().source); },
-                             "File and grid, for messages.");
+      .def_static(
+          "open", &volumeFromFile, "file"_a = py::none(),
+          "open(file=None, **kwargs)\n--\n\n"
+          "Reads an OpenVDB file or a scan, or makes 'procedural:NAME'; without a file the volume of a scene. Options: grid, resolution,\n"
+          "raw, series, time_step, spacing, no_data, and those of a frame, of which emission=True, temperature_grid and albedo_grid add "
+          "grids to read. Of a baked\n"
+          "volume (.fvx) a level of detail is read when a frame needs it.")
+      .def("__repr__",
+           [](const PythonVolume& v) {
+             const glm::ivec3 size = v.describe().dimensions;
+             return fmt::format("<freevoxels.Volume of {}: {} x {} x {} voxels along z, y, x>", printable(v.describe().source), size.z,
+                                size.y, size.x);
+           })
+      .def_property_readonly(
+          "shape",
+          [](const PythonVolume& v) {
+            const glm::ivec3 size = v.describe().dimensions;
+            return py::make_tuple(size.z, size.y, size.x);
+          },
+          "Voxels along z, y and x.")
+      .def_property_readonly(
+          "range", [](const PythonVolume& v) { return std::pair(v.describe().minimum, v.describe().maximum); },
+          "The least and the largest value of the voxels that hold data.")
+      .def_property_readonly(
+          "active_voxels", [](const PythonVolume& v) { return v.describe().activeVoxels; }, "How many voxels hold data.")
+      .def_property_readonly(
+          "origin",
+          [](const PythonVolume& v) {
+            const glm::dvec3 origin(v.describe().indexToWorld[3]);
+            return py::make_tuple(origin.x, origin.y, origin.z);
+          },
+          "World position (x, y, z) of the centre of voxel [0, 0, 0].")
+      .def_property_readonly(
+          "source", [](const PythonVolume& v) { return fileNameOf(v.describe().source); }, "File and grid, for messages.");
 }
 
 }  // namespace freevoxels

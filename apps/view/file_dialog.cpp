@@ -18,6 +18,7 @@
 #include "engine/core/error.h"
 #include "engine/description/scene_description.h"
 #include "engine/volume/procedural.h"
+#include "engine/volume/scan_file.h"
 
 namespace freevoxels {
 
@@ -44,9 +45,21 @@ std::string timeText(fs::file_time_type time) {
 }
 
 bool hasEnding(const fs::path& file, const std::vector<std::string>& endings) {
-  std::string extension = file.extension().string();
-  std::ranges::transform(extension, extension.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return std::ranges::find(endings, extension) != endings.end();
+  std::string name = file.filename().string();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return std::ranges::any_of(endings, [&](const std::string& ending) { return name.ends_with(ending); });
+}
+
+/// What can be opened.
+std::vector<std::string> openedEndings() {
+  std::vector<std::string> endings{".vdb", ".fvx", ".json", ".exr", ".hdr"};
+  endings.insert(endings.end(), scanEndings().begin(), scanEndings().end());
+  return endings;
+}
+
+/// Whether the files of a numbered name may be frames: those of DICOM are slices.
+bool mayBeFrame(const fs::path& file) {
+  return hasEnding(file, {".vdb"}) || (hasScanEnding(file) && !hasEnding(file, {".dcm", ".ima"}));
 }
 
 }  // namespace
@@ -55,7 +68,7 @@ FileDialog::FileDialog(const Device& device, const SessionStore& store)
     : device_(device), store_(store), start_(fs::current_path()), folder_(start_) {}
 
 void FileDialog::open(std::function<void(const std::string&)> chosen) {
-  begin("Open", {".vdb", ".fvx", ".json", ".exr", ".hdr"}, std::move(chosen));
+  begin("Open", openedEndings(), std::move(chosen));
   saves_ = false;
   name_.clear();
 }
@@ -106,11 +119,11 @@ void FileDialog::go(fs::path folder) {
 void FileDialog::addFiles(const std::vector<fs::directory_entry>& files) {
   std::set<std::string> framesOfSome;
   for (const fs::directory_entry& file : files) {
-    const std::string name = file.path().filename().string(), stem = file.path().stem().string();
+    const std::string name = file.path().filename().string(), stem = stemOf(file.path());
     std::error_code unknown;
     const std::uintmax_t bytes = file.file_size(unknown);
     const fs::file_time_type time = file.last_write_time(unknown);
-    const bool isNumbered = !saves_ && hasEnding(file.path(), {".vdb"}) && !stem.empty() && std::isdigit(stem.back()) != 0;
+    const bool isNumbered = !saves_ && mayBeFrame(file.path()) && !stem.empty() && std::isdigit(stem.back()) != 0;
     if (isNumbered && !framesOfSome.contains(file.path().string()))
       if (const std::optional<Sequence> sequence = sequenceAround(file.path().string())) {
         framesOfSome.insert(sequence->files.begin(), sequence->files.end());

@@ -52,13 +52,13 @@ void openFile(ViewState& state, const std::string& file) {
   const bool named = proceduralName(file) || isPattern(file);
   if (!named && !std::filesystem::exists(file))
     fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", file);
-  if (named || hasExtension(file, ".vdb") || hasExtension(file, ".fvx")) return openVolume(state, file);
+  if (named || hasExtension(file, ".vdb") || InputDescription{.volume = file}.kind() != VolumeKind::OpenVdb) return openVolume(state, file);
   if (hasExtension(file, ".exr") || hasExtension(file, ".hdr")) {
     state.scene.lighting.environment = file;
     state.changed = true;
   } else if (!hasExtension(file, ".json")) {
     fail(ErrorKind::Input,
-         "'{}' cannot be shown: open a volume (.vdb, .fvx), a scene or a transfer function (.json), or the light "
+         "'{}' cannot be shown: open a volume (.vdb, .fvx or a scan), a scene or a transfer function (.json), or the light "
          "around (.exr, .hdr)",
          file);
   } else if (isTransferFunction(file)) {

@@ -30,7 +30,7 @@ int frameOf(const ViewState& state) {
 }  // namespace
 
 std::vector<GridChoice> GridList::list(const std::string& input) {
-  if (proceduralName(input)) return {};
+  if (InputDescription{.volume = input}.kind() != VolumeKind::OpenVdb) return {};
   try {
     return listVdb(input);
   } catch (const Error&) {

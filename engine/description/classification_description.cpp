@@ -63,14 +63,15 @@ std::optional<GridRequest> ClassificationDescription::grid() const {
 }
 
 void ClassificationDescription::check(const InputDescription& input) const {
-  const bool isProcedural = proceduralName(input.volume).has_value();
+  const VolumeKind kind = input.volume.empty() ? VolumeKind::OpenVdb : input.kind();
   for (const auto& [name, isGiven] : {std::pair("labels", labels.has_value()), {"channel", !channels.empty()}})
-    if (isGiven && !isProcedural && fvx::isFvx(input.volume))
+    if (isGiven && kind == VolumeKind::Baked)
       fail(ErrorKind::Usage, "{} says how values are read, and '{}' is a baked volume: give it to 'freevoxels bake'", Parameter(name),
            input.volume);
   if (channels.empty()) return;
   doEmit(channels);
-  if (isProcedural) fail(ErrorKind::Usage, "{} names grids of a file, and {} has one", Parameter("channel"), input.volume);
+  if (kind != VolumeKind::OpenVdb)
+    fail(ErrorKind::Usage, "{} names grids of an OpenVDB file, and '{}' has one", Parameter("channel"), input.volume);
   if (input.grid) fail(ErrorKind::Usage, "{} and {} exclude each other: channels are grids", Parameter("channel"), Parameter("grid"));
 }
 

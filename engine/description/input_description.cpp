@@ -92,11 +92,30 @@ Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolut
 }
 
 void InputDescription::checkGiven() const {
-  if (volume.empty()) fail(ErrorKind::Usage, "IN is required: name an OpenVDB file, or procedural:NAME");
+  if (volume.empty()) fail(ErrorKind::Usage, "IN is required: name an OpenVDB file, a scan, or procedural:NAME");
+}
+
+VolumeKind InputDescription::kind() const {
+  if (proceduralName(volume)) return VolumeKind::Procedural;
+  if (raw) return VolumeKind::Scan;
+  if (fvx::isFvx(volume)) return VolumeKind::Baked;
+  return isScanFile(volume) ? VolumeKind::Scan : VolumeKind::OpenVdb;
+}
+
+ScanRequest InputDescription::scanRequest(std::uint64_t maximumVoxels, const Progress& progress) const {
+  return {.array = grid.value_or(""),
+          .raw = raw,
+          .series = series,
+          .timeStep = timeStep,
+          .spacing = spacing,
+          .noData = noData,
+          .maximumVoxels = maximumVoxels,
+          .progress = progress};
 }
 
 void InputDescription::check() const {
-  const bool isProcedural = proceduralName(volume).has_value(), isBaked = !isProcedural && fvx::isFvx(volume);
+  const VolumeKind what = kind();
+  const bool isProcedural = what == VolumeKind::Procedural, isBaked = what == VolumeKind::Baked;
   if (noData && isBaked)
     fail(ErrorKind::Usage, "{} does not apply to a baked volume such as '{}': give it to 'freevoxels bake'", Parameter("no-data"), volume);
   if (grid && isBaked)
@@ -108,18 +127,32 @@ void InputDescription::check() const {
   if (grid && isProcedural) fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("grid"), volume);
   if (resolution && !isProcedural)
     fail(ErrorKind::Usage, "{} is for procedural:NAME, and '{}' has the resolution of its grid", Parameter("resolution"), volume);
+  for (const auto& [isGiven, name] : {std::pair(raw.has_value(), "raw"), std::pair(series.has_value(), "series"),
+                                      std::pair(timeStep.has_value(), "time-step"), std::pair(spacing.has_value(), "spacing")})
+    if (isGiven && what != VolumeKind::Scan) fail(ErrorKind::Usage, "{} is for scans, and '{}' is none", Parameter(name), volume);
+  if (spacing && !(std::min({spacing->x, spacing->y, spacing->z}) > 0.0))
+    fail(ErrorKind::Usage, "{} must be above 0 along all axes", Parameter("spacing", numberText(*spacing)));
 }
 
 std::shared_ptr<const fvx::FvxFile> InputDescription::baked() const {
-  if (isClipped() || proceduralName(volume) || !fvx::isFvx(volume)) return nullptr;
+  if (isClipped() || kind() != VolumeKind::Baked) return nullptr;
   return std::make_shared<const fvx::FvxFile>(volume);
 }
 
 Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& what, int level, const Progress& progress) const {
-  const std::optional<std::string> name = proceduralName(volume);
+  const VolumeKind kindOfVolume = kind();
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
-  if (!name && fvx::isFvx(volume)) return openClippedBaked(*this, maximumVoxels, progress);
-  if (!name) {
+  if (kindOfVolume == VolumeKind::Baked) return openClippedBaked(*this, maximumVoxels, progress);
+  if (kindOfVolume == VolumeKind::Scan) {
+    for (const auto& [wanted, name] :
+         {std::pair(&what.more.temperature, "temperature-grid"), std::pair(&what.more.albedo, "albedo-grid")})
+      if (*wanted && (*wanted)->isRequired)
+        fail(ErrorKind::Usage, "{} is of OpenVDB files, and '{}' is a scan, which has one grid: leave it out", Parameter(name), volume);
+    ScanRequest request = scanRequest(maximumVoxels, progress);
+    request.labels = what.labels.of(false);
+    return clip(readScan(volume, request));
+  }
+  if (kindOfVolume == VolumeKind::OpenVdb) {
     ReadRequest request = what;
     request.grid = grid.value_or("");
     request.maximumVoxels = maximumVoxels;
@@ -128,7 +161,7 @@ Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& wh
     request.progress = progress;
     return clip(readVdb(volume, request));
   }
-  Volume made = openProcedural(*name, resolution, maximumVoxels, progress);
+  Volume made = openProcedural(*proceduralName(volume), resolution, maximumVoxels, progress);
   if (!what.more.temperature) made.temperature.reset();
   if (noData) summariseValues(made, noData->scalar());
   settleNoData(made, noData);

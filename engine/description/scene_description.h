@@ -25,7 +25,9 @@
 #include "engine/volume/classification.h"
 #include "engine/volume/coarse_volume.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/raw_layout.h"
 #include "engine/volume/scan.h"
+#include "engine/volume/scan_file.h"
 #include "engine/volume/scene_volume.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
@@ -45,14 +47,21 @@ inline constexpr const char* kNone = "none";
 /// Frames of a turn around the volume.
 inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 
+/// What the name of a volume names.
+enum class VolumeKind { Procedural, Baked, Scan, OpenVdb };
+
 /// The volume, before it is read.
 struct InputDescription {
-  std::string volume;              ///< an OpenVDB file, a baked volume (.fvx) or "procedural:NAME"
-  std::optional<std::string> grid;  ///< of an OpenVDB file, as readVdb has it; else `density`, or the only float grid
+  std::string volume;  ///< an OpenVDB file, a scan (scan_file.h), a folder of DICOM files, a baked volume (.fvx) or "procedural:NAME"
+  std::optional<std::string> grid;  ///< of an OpenVDB file, as readVdb has it; else `density`, or the only float grid; of a scan an array
   std::optional<glm::ivec3> resolution;  ///< voxels of a procedural volume, 1 to kMaxResolution; else kDefaultResolution
   std::optional<VoxelBox> clipBox;       ///< in the volume's box; the voxels outside of it are not drawn
   std::optional<ClipPlane> clipPlane;    ///< the voxels in front of it are not drawn
   std::optional<NoData> noData;          ///< of a volume that is not baked; else the padding of a scan holds no data
+  std::optional<RawLayout> raw;          ///< makes any file a scan without a header
+  std::optional<std::string> series;     ///< of DICOM files, its UID
+  std::optional<int> timeStep;           ///< of a scan with several, at least 0
+  std::optional<glm::dvec3> spacing;     ///< of a scan, above 0; else as its file says
 
   /// Fails without a volume.
   void checkGiven() const;
@@ -65,6 +74,10 @@ struct InputDescription {
   /// temperatures and albedos. If the box of a baked volume is too large at `level` of its octree, the finest level that fits is
   /// opened, with a warning. `what`: more grids, labels and channels; the rest of it is that of the input. `progress` may abandon it.
   Volume open(std::uint64_t maximumVoxels, const ReadRequest& what = {}, int level = 0, const Progress& progress = {}) const;
+  /// The one place that decides it: by the name, by the content of a file whose name says nothing, and by `raw`.
+  VolumeKind kind() const;
+  /// What to read of a scan.
+  ScanRequest scanRequest(std::uint64_t maximumVoxels, const Progress& progress = {}) const;
   /// Null where the volume is not a baked one, and where it is clipped, so that it is read into memory.
   std::shared_ptr<const fvx::FvxFile> baked() const;
 

@@ -160,8 +160,8 @@ NoData readNoData(const std::string& name, const std::string& given) {
 void addInput(std::vector<SceneField>& fields) {
   using Input = InputDescription;
   Section<Input> section(fields, "input", &SceneDescription::input);
-  section.add("volume", &Input::volume, text(Kind::Volume, "the name of a volume")).replaces = {"grid", "resolution", "clip-box",
-                                                                                                "clip-plane", "no-data"};
+  section.add("volume", &Input::volume, text(Kind::Volume, "the name of a volume")).replaces = {
+      "grid", "resolution", "clip-box", "clip-plane", "no-data", "raw", "series", "time-step", "spacing"};
   section.add("grid", &Input::grid, text(Kind::Name, "NAME"));
   Codec<glm::ivec3> resolution = extent<glm::ivec3>("WxHxD", kMaxResolution);
   resolution.text = [](const glm::ivec3& size) { return resolutionText(size); };
@@ -171,6 +171,11 @@ void addInput(std::vector<SceneField>& fields) {
   section.add("no-data", &Input::noData, Codec<NoData>{.form = "VALUE|none", .read = readNoData, .text = [](const NoData& marks) {
                                                          return marks.value ? numberText(*marks.value) : std::string(kNone);
                                                        }});
+  section.add("raw", &Input::raw,
+              Codec<RawLayout>{.form = "WxHxD,TYPE[,big][,header=BYTES]", .read = readRawLayout, .text = rawLayoutText});
+  section.add("series", &Input::series, text(Kind::Name, "UID"));
+  section.add("time-step", &Input::timeStep, numbers<int>({.form = "N", .range = {0.0, double(kBeyondAnything)}, .whole = true}));
+  section.add("spacing", &Input::spacing, numbers<glm::dvec3>({.form = "X,Y,Z", .range = kPositive, .mayBeOne = true}));
   section.add("clip-plane", &Input::clipPlane, numbers<ClipPlane>({.form = "X,Y,Z,NX,NY,NZ", .range = {-1e30, 1e30}}));
 }
 

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <cctype>
 #include <fstream>
 #include <limits>
 #include <span>
@@ -46,40 +45,9 @@ void checkRegularFile(const fs::path& file) {
     const std::string meant = suggestion(file.filename().string(), namesBeside(file));
     fail(ErrorKind::Input, "there is no file '{}'{}", file.string(), meant.empty() ? "; check the name" : meant);
   }
-  if (fs::is_directory(status))
-    fail(ErrorKind::Input, "'{}' is a folder; name an OpenVDB file in it", file.string());
   if (!fs::is_regular_file(status))
     fail(ErrorKind::Input, "'{}' is not a regular file; copy its contents into a .vdb file first",
          file.string());
-}
-
-struct ScanFormat {
-  std::string_view ending, name;
-};
-constexpr std::array<ScanFormat, 13> kScanFormats{{{".nii", "a NIfTI scan"},
-                                                   {".nii.gz", "a NIfTI scan"},
-                                                   {".nrrd", "an NRRD scan"},
-                                                   {".nhdr", "an NRRD scan"},
-                                                   {".mha", "a MetaImage scan"},
-                                                   {".mhd", "a MetaImage scan"},
-                                                   {".vti", "a VTK image"},
-                                                   {".vtk", "a VTK file"},
-                                                   {".dcm", "a DICOM slice"},
-                                                   {".tif", "a TIFF image"},
-                                                   {".tiff", "a TIFF image"},
-                                                   {".mrc", "an MRC map"},
-                                                   {".raw", "values without a header"}}};
-
-/// Fails if the file's name is that of a scan's format.
-void refuseScan(const fs::path& file) {
-  std::string name = file.filename().string();
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  for (const ScanFormat& format : kScanFormats)
-    if (name.ends_with(format.ending))
-      fail(ErrorKind::Input,
-           "'{}' is {}, not an OpenVDB file: read it in Python, for instance with SimpleITK, and give the array to "
-           "freevoxels.render, or convert it to .vdb",
-           file.string(), format.name);
 }
 
 /// Guesses the kind of a file that is not an OpenVDB file.
@@ -98,7 +66,6 @@ std::string_view guessKind(const fs::path& file) {
 
 void checkSignature(const fs::path& file, VdbReader& reader) {
   if (reader.size() < sizeof(kMagic) || reader.read<std::int64_t>() != kMagic) {
-    refuseScan(file);
     fail(ErrorKind::Input, "'{}' is not an OpenVDB file: {}; give a .vdb file that OpenVDB has written",
          file.string(), guessKind(file));
   }

@@ -4,24 +4,23 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/error.h"
-#include "engine/volume/scan.h"
 
 namespace freevoxels {
 
 namespace {
 
-void checkTransform(const glm::dmat4& indexToWorld) {
+void checkTransform(const glm::dmat4& indexToWorld, const std::string& source) {
   const double determinant = glm::determinant(glm::dmat3(indexToWorld));
   const glm::dvec4 origin = indexToWorld[3];
   if (!std::isfinite(determinant) || !(std::abs(determinant) > 0.0) || !std::isfinite(origin.x + origin.y + origin.z))
-    fail(ErrorKind::Input, "voxels of the array have no extent: spacing, origin and transform must be finite, and the spacing "
-                          "along each axis not 0");
+    fail(ErrorKind::Input,
+         "voxels of {} have no extent: spacing, origin and transform must be finite, and the spacing along each axis not 0", source);
 }
 
 }  // namespace
 
 Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& indexToWorld, const std::vector<ChannelStyle>& channels) {
-  checkTransform(indexToWorld);
+  checkTransform(indexToWorld, "the array");
   Volume volume{.source = "the array", .dimensions = values.front().dimensions(), .indexToWorld = indexToWorld};
   normaliseWorld(volume);
   mixChannels(volume, channels, std::move(values));
@@ -34,17 +33,18 @@ glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin)
   return glm::scale(glm::translate(glm::dmat4(1.0), origin), spacing);
 }
 
-Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, bool knowsNoData, const Labels* labels) {
-  checkTransform(indexToWorld);
-  Volume volume{.source = "the array", .dimensions = scalars.dimensions(), .indexToWorld = indexToWorld, .scalars = std::move(scalars)};
+Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, const std::optional<NoData>& noData,
+                       const std::string& source, const Labels* labels) {
+  checkTransform(indexToWorld, source);
+  Volume volume{.source = source, .dimensions = scalars.dimensions(), .indexToWorld = indexToWorld, .scalars = std::move(scalars)};
   normaliseWorld(volume);
   if (labels != nullptr)
     showLabels(volume, *labels);
   else
-    summariseValues(volume);
+    summariseValues(volume, noData ? noData->scalar() : std::nullopt);
   const glm::ivec3 size = volume.dimensions;
   if (volume.activeVoxels == 0)
-    fail(ErrorKind::Input, "the array of {} x {} x {} voxels holds no data: {}", size.x, size.y, size.z,
+    fail(ErrorKind::Input, "{} of {} x {} x {} voxels holds no data: {}", source, size.x, size.y, size.z,
          labels != nullptr ? kNoLabelClause : "all its values are NaN, or mark that there is none");
   if (labels != nullptr) return volume;
   volume.isFog = looksLikeFog(volume);
@@ -52,8 +52,9 @@ Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, boo
     summariseValues(volume, 0.0f);
     volume.remarks.push_back(
         fmt::format("its values are taken for densities, and 0 for no data ({} draws it as a scan)", Parameter("transfer-function")));
+  } else {
+    settleNoData(volume, noData);
   }
-  if (!volume.isFog && !knowsNoData) settleNoData(volume, {});
   orientScan(volume);
   return volume;
 }

@@ -42,16 +42,22 @@ TEST_F(BadInput, MissingFileNamesTheNearestOne) {
   expectCleanRefusal(std::string("render @smoke_001.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "did you mean 'smoke_0001.vdb'?");
 }
 
-TEST_F(BadInput, ScanSaysWhatReadsIt) {
+TEST_F(BadInput, ScanThatIsNone) {
   writeBytes(folder / "head.NRRD", "NRRD0004\ntype: short\n");
   writeBytes(folder / "brain.nii.gz", "\x1f\x8b 123456789");
-  expectCleanRefusal(std::string("render @head.NRRD @a.png") + kSmallAndQuiet, ExitCode::Input, "is an NRRD scan");
-  expectCleanRefusal(std::string("info @brain.nii.gz"), ExitCode::Input, "read it in Python");
+  writeBytes(folder / "map.mrc", "map");
+  expectCleanRefusal(std::string("render @head.NRRD @a.png") + kSmallAndQuiet, ExitCode::Input, "head.NRRD");
+  expectCleanRefusal("info @brain.nii.gz", ExitCode::Input, "brain.nii.gz");
+  expectCleanRefusal("info @map.mrc", ExitCode::Input, "convert it to NRRD");
+  expectCleanRefusal("info @none.nrrd", ExitCode::Input, "there is no such file");
+  makeCube("cube.vdb");
+  expectCleanRefusal(std::string("render @cube.vdb @a.png --spacing 1,1,2") + kSmallAndQuiet, ExitCode::Usage, "--spacing is for scans");
+  expectCleanRefusal(std::string("render @none.nrrd @a.png --spacing 1,0,2") + kSmallAndQuiet, ExitCode::Usage, "above 0");
 }
 
-TEST_F(BadInput, FolderInsteadOfFile) {
+TEST_F(BadInput, FolderWithoutSlices) {
   std::filesystem::create_directory(folder / "volumes.vdb");
-  expectCleanRefusal(std::string("render @volumes.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "volumes.vdb");
+  expectCleanRefusal(std::string("render @volumes.vdb @a.png") + kSmallAndQuiet, ExitCode::Input, "a folder without DICOM files");
 }
 
 TEST_F(BadInput, TextFileNamedVdb) {

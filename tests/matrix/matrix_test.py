@@ -9,6 +9,7 @@ import logging
 import pathlib
 import re
 import shutil
+import struct
 import tempfile
 import unittest
 
@@ -46,7 +47,54 @@ def grid_of(name, shape):
     return grid
 
 
+def dicom_slice(values, number, series):
+    """Explicit and little-endian, 2.5 mm above the one before."""
+
+    def element(group, member, form, value):
+        if isinstance(value, str):
+            value = value.encode()
+            value += (b"\0" if form == "UI" else b" ") * (len(value) % 2)
+        head = struct.pack("<HH2s", group, member, form.encode())
+        return head + (struct.pack("<xxI", len(value)) if form == "OW" else struct.pack("<H", len(value))) + value
+
+    kind, name = "1.2.840.10008.5.1.4.1.1.2", f"{series}.{number}"
+    meta = element(2, 2, "UI", kind) + element(2, 3, "UI", name) + element(2, 0x10, "UI", "1.2.840.10008.1.2.1")
+    data = element(8, 0x16, "UI", kind) + element(8, 0x18, "UI", name) + element(0x20, 0xE, "UI", series)
+    data += element(0x20, 0x32, "DS", f"0\\0\\{2.5 * number}") + element(0x20, 0x37, "DS", "1\\0\\0\\0\\1\\0")
+    data += element(0x28, 2, "US", b"\1\0") + element(0x28, 4, "CS", "MONOCHROME2")
+    data += element(0x28, 0x10, "US", struct.pack("<H", values.shape[0])) + element(0x28, 0x11, "US", struct.pack("<H", values.shape[1]))
+    data += element(0x28, 0x30, "DS", "1\\1") + b"".join(element(0x28, tag, "US", struct.pack("<H", n))
+                                                         for tag, n in ((0x100, 16), (0x101, 16), (0x102, 15), (0x103, 0)))
+    data += element(0x28, 0x1052, "DS", "-1024") + element(0x28, 0x1053, "DS", "1") + element(0x7FE0, 0x10, "OW", values.astype("<u2").tobytes())
+    return bytes(128) + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + data
+
+
+def write_scan(file, shape):
+    values = 1000 * blob(shape)
+    if file.suffix == ".raw":
+        file.write_bytes(bytes(7) + values.astype(">i2").tobytes())
+    elif file.suffix == ".nrrd":
+        sizes = " ".join(map(str, values.shape[::-1]))
+        header = f"NRRD0004\ntype: float\ndimension: 3\nspace: left-posterior-superior\nsizes: {sizes}\n"
+        header += "space directions: (0,1.5,0) (0,0,2) (1,0,0)\nspace origin: (3,4,5)\nendian: little\nencoding: raw\n\n"
+        file.write_bytes(header.encode() + values.tobytes())
+    elif file.suffix == ".nii":
+        sizes = np.array([4, *values.shape[::-1], 2, 1, 1, 1], "<i2")
+        header = bytearray(352)
+        header[0:4], header[40:56], header[70:74] = struct.pack("<i", 348), sizes.tobytes(), struct.pack("<2h", 16, 32)
+        header[76:96], header[108:120] = struct.pack("<5f", 1, 1, 1, 1, 1), struct.pack("<3f", 352, 2, -10)
+        header[344:347] = b"n+1"
+        file.write_bytes(bytes(header) + values.tobytes() + values[::-1].tobytes())
+    else:
+        file.mkdir()
+        for series, step in (("1.2.3", 1), ("1.2.4", -1)):
+            for number, of_slice in enumerate(values[::step]):
+                (file / f"{series}_{number}").write_bytes(dicom_slice(of_slice + 1024, number, series))
+
+
 def write(file, kind):
+    if "grids" not in kind and file.suffix != ".exr":
+        return write_scan(file, kind["shape"])
     if file.suffix == ".exr":
         image = np.ones((*kind["shape"], 4), "float32")
         image[..., :3] = np.random.default_rng(1).random((*kind["shape"], 3))

@@ -199,7 +199,7 @@ class SequenceTest(unittest.TestCase):
             (wrong, "its numbers are from 1 to 3", lambda: freevoxels.Sequence(pattern, frames=range(7, 9))),
             (usage, "'fixed_view' takes True or False, not str", lambda: freevoxels.Sequence(pattern, fixed_view="yes")),
             (usage, "did you mean 'density_scale'", lambda: freevoxels.Sequence(pattern, densty_scale=3)),
-            (usage, "'spacing' is an option of arrays", lambda: freevoxels.Sequence(pattern, spacing=3)),
+            (usage, "'origin' is an option of arrays", lambda: freevoxels.Sequence(pattern, origin=(1, 2, 3))),
             (usage, "'frame' is the place of a frame in the sequence, from 0 to 2, not 3", lambda: freevoxels.Sequence(pattern).render(3)),
             (usage, "'frame' is the place of a frame in the sequence, from 0 to 2, not -1", lambda: freevoxels.Sequence(pattern).render(-1)),
             (usage, "not 1.5", lambda: freevoxels.Sequence(pattern).render(1.5)),

@@ -105,7 +105,7 @@ class ToolsTest(unittest.TestCase):
             (usage, "there is no volume to bake", lambda: freevoxels.bake(None, file)),
             (usage, "'orbit' has no effect here", lambda: freevoxels.bake("procedural:cloud", file, orbit=(1, 2))),
             (usage, "'clip_box' has no effect here", lambda: freevoxels.bake("procedural:cloud", file, clip_box=(1, 1, 1, 4, 4, 4))),
-            (usage, "'spacing' is an option of arrays", lambda: freevoxels.bake("procedural:cloud", file, spacing=2)),
+            (usage, "'spacing' is for scans", lambda: freevoxels.bake("procedural:cloud", file, spacing=2)),
             (usage, "'compress' takes True or False", lambda: freevoxels.bake(array, file, compress=1)),
             (usage, "'a.fvx (the array)' was baked for one classification", lambda: freevoxels.bake(freevoxels.Volume.open(file), self.folder / "b.fvx")),
             (usage, "was baked for one classification", lambda: freevoxels.bake(file, self.folder / "b.fvx")),

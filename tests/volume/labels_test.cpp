@@ -128,12 +128,12 @@ TEST_F(Vdb, RealNumbersAreChosenBeforeLabels) {
 TEST(Labels, OfAnArrayAreDrawnAsThoseOfAFile) {
   const Labels labels{.showsAll = true, .styles = {{2, {.opacity = 0.0f}}}};
   const auto scalars = [] { return ScalarBricks::make(glm::ivec3(9, 3, 4), [](glm::ivec3 v) { return float(v.x % 3); }); };
-  const Volume volume = volumeOfScalars(scalars(), glm::dmat4(1.0), true, &labels);
+  const Volume volume = volumeOfScalars(scalars(), glm::dmat4(1.0), NoData{}, "the array", &labels);
   EXPECT_EQ(solidVoxels(volume), 3u * 3u * 4u);
   EXPECT_EQ(volume.up, glm::dvec3(0.0, 1.0, 0.0));
   EXPECT_EQ(colorAt(volume, glm::ivec3(4, 2, 3)), automaticLabelColor(1));
   const Labels others{.showsAll = false, .styles = {{5, {}}}};
-  expectRefusal([&] { volumeOfScalars(scalars(), glm::dmat4(1.0), true, &others); }, ErrorKind::Input, {"label"});
+  expectRefusal([&] { volumeOfScalars(scalars(), glm::dmat4(1.0), NoData{}, "the array", &others); }, ErrorKind::Input, {"label"});
 }
 
 }  // namespace

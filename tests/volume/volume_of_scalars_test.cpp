@@ -15,7 +15,7 @@ namespace {
 
 Volume volumeOf(glm::ivec3 size, const std::function<float(glm::ivec3)>& value, const glm::dmat4& indexToWorld = glm::dmat4(1.0),
                 bool knowsNoData = false) {
-  return volumeOfScalars(ScalarBricks::make(size, value), indexToWorld, knowsNoData);
+  return volumeOfScalars(ScalarBricks::make(size, value), indexToWorld, knowsNoData ? std::optional(NoData{}) : std::nullopt);
 }
 
 /// From 0 on the sides of a box of `size` to 1 in its middle.

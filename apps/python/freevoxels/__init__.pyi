@@ -32,10 +32,14 @@ class _Part(TypedDict, total=False):  # which part of a file is read
     resolution: int | _Triple
     clip_box: _Numbers
     clip_plane: _Numbers
+    raw: str
+    series: str
+    time_step: int
     input: _Section
 
 class _Input(_Part, total=False):
     volume: _Path
+    spacing: float | Sequence_[float] | NDArray[Any]
     no_data: float | Literal["none"] | None
 
 class _Volumes(TypedDict, total=False):
@@ -133,7 +137,6 @@ class _OnceOptions(_Part, _FrameOptions, total=False):
 class _SceneOptions(_Input, _Volumes, _Camera, _Classification, _Emission, _Light, _Method, _Output, _SceneFile, total=False): ...
 
 class _BakeOptions(_Input, _Classification, _Emission, _SceneFile, total=False):
-    spacing: float | Sequence_[float] | NDArray[Any]
     origin: Sequence_[float] | NDArray[Any]
     transform: ArrayLike | None
     temperature: ArrayLike | None

@@ -109,10 +109,11 @@ struct Placement {
 /// A volume in memory, or a baked file that is open. Copies share its data.
 class FREEVOXELS_API Volume {
  public:
-  /// Reads an OpenVDB file, or makes "procedural:NAME"; if `file` is empty, that of the scene's key "volume". `scene` names the grid and
-  /// the resolution, and has the keys of later frames: emission, temperature-grid and albedo-grid decide which further grids are
-  /// read. A volume that the device cannot hold is drawn piece by piece. The values
-  /// of a baked volume are read when it is drawn, from the level of detail that the frame needs; its file must not be changed meanwhile.
+  /// Reads an OpenVDB file or a scan, a folder of DICOM files included, or makes "procedural:NAME"; if `file` is empty, that of the scene's
+  /// key "volume". `scene` names the grid, the resolution and what to read of a scan (spacing, raw, series, time-step), and has the keys of
+  /// later frames: emission, temperature-grid and albedo-grid decide which further grids are read. A volume that the device cannot hold is
+  /// drawn piece by piece. The values of a baked volume are read when it is drawn, from the level of detail that the frame needs; its file
+  /// must not be changed meanwhile.
   static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
   /// The same for renderers of any device, none of which is opened here.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
@@ -280,8 +281,8 @@ FREEVOXELS_API void bake(const std::filesystem::path& volume, const std::filesys
 /// Bakes a volume that is open. `scene` has no keys of the volume.
 FREEVOXELS_API void bake(const Volume& volume, const std::filesystem::path& file, std::string_view scene = "{}", const Progress& progress = {});
 
-/// What a file or "procedural:NAME" holds: the text of `freevoxels info --json`. `scene` has the key "resolution", and "check": true reads
-/// all of a baked volume and fails with ErrorKind::Input where anything is damaged.
+/// What a file or "procedural:NAME" holds: the text of `freevoxels info --json`. `scene` has the key "resolution" and those of scans, and
+/// "check": true reads all of a baked volume and fails with ErrorKind::Input where anything is damaged.
 FREEVOXELS_API std::string info(const std::filesystem::path& volume, std::string_view scene = "{}");
 
 /// The Vulkan devices of this machine: the text of `freevoxels devices --json`.

@@ -1,0 +1,266 @@
+// Scans that ITK reads, of one file each (and its detached data). ITK's ImageIO classes are used alone, without factories and images.
+#include <itkMetaImageIO.h>
+#include <itkNiftiImageIO.h>
+#include <itkNrrdImageIO.h>
+#include <itkTIFFImageIO.h>
+#include <itkVTKImageIO.h>
+#include <zlib.h>
+
+#include <algorithm>
+#include <cctype>
+#include <cstdarg>
+#include <cstdio>
+#include <iterator>
+#include <map>
+#include <memory>
+#include <span>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "engine/volume/itk_common.h"
+#include "engine/volume/nifti_values.h"
+#include "engine/volume/scan_reader.h"
+
+namespace freevoxels {
+
+namespace {
+
+itk::ImageIOBase::Pointer readerOf(ItkFormat format) {
+  switch (format) {
+    case ItkFormat::Nrrd:
+      return itk::NrrdImageIO::New().GetPointer();
+    case ItkFormat::MetaImage:
+      return itk::MetaImageIO::New().GetPointer();
+    case ItkFormat::Nifti:
+      return itk::NiftiImageIO::New().GetPointer();
+    case ItkFormat::Tiff:
+      return itk::TIFFImageIO::New().GetPointer();
+    case ItkFormat::Vtk:
+      break;
+  }
+  return itk::VTKImageIO::New().GetPointer();
+}
+
+const char* nameOf(ItkFormat format) {
+  switch (format) {
+    case ItkFormat::Nrrd:
+      return "NRRD";
+    case ItkFormat::MetaImage:
+      return "MetaImage";
+    case ItkFormat::Nifti:
+      return "NIfTI";
+    case ItkFormat::Tiff:
+      return "TIFF";
+    case ItkFormat::Vtk:
+      break;
+  }
+  return "VTK";
+}
+
+extern "C" {
+// Of ITK's own copy of libtiff, for which it installs no header.
+using ItkTiffHandler = void (*)(const char* module, const char* format, va_list values);
+ItkTiffHandler itk_TIFFSetErrorHandler(ItkTiffHandler handler);
+ItkTiffHandler itk_TIFFSetWarningHandler(ItkTiffHandler handler);
+}
+
+/// As long as one lives, libtiff prints nothing, and its first error is kept, some of which ITK passes over.
+class TiffErrors {
+ public:
+  TiffErrors() : error_(itk_TIFFSetErrorHandler(&keep)), warning_(itk_TIFFSetWarningHandler(nullptr)) { first().clear(); }
+  ~TiffErrors() {
+    itk_TIFFSetErrorHandler(error_);
+    itk_TIFFSetWarningHandler(warning_);
+  }
+  void check(const std::filesystem::path& file) const {
+    if (!first().empty()) failDamaged(file, first());
+  }
+
+ private:
+  static std::string& first() {
+    static thread_local std::string text;
+    return text;
+  }
+  static void keep(const char*, const char* format, va_list values) {
+    char text[200];
+    std::vsnprintf(text, sizeof(text), format, values);
+    if (first().empty()) first() = text;
+  }
+
+  const ItkTiffHandler error_, warning_;
+};
+
+/// Nothing for types of vectors, colours and complex numbers, and of more than 64 bits.
+std::optional<SampleType> niftiType(int code) {
+  switch (code) {
+    case 2:
+      return SampleType::U8;
+    case 4:
+      return SampleType::I16;
+    case 8:
+      return SampleType::I32;
+    case 16:
+      return SampleType::F32;
+    case 64:
+      return SampleType::F64;
+    case 256:
+      return SampleType::I8;
+    case 512:
+      return SampleType::U16;
+    case 768:
+      return SampleType::U32;
+    case 1024:
+      return SampleType::I64;
+    case 1280:
+      return SampleType::U64;
+    default:
+      return std::nullopt;
+  }
+}
+
+/// The first bytes of a file, unpacked where it is compressed.
+std::string startOf(const std::filesystem::path& file, std::size_t most) {
+  std::string start(most, '\0');
+  const gzFile stream = gzopen(file.c_str(), "rb");
+  const int got = stream ? gzread(stream, start.data(), unsigned(most)) : 0;
+  if (stream) gzclose(stream);
+  start.resize(std::size_t(std::max(got, 0)));
+  return start;
+}
+
+/// MetaIO prints what it misses in a header, so that it is looked for before.
+void checkMetaHeader(const std::filesystem::path& file) {
+  constexpr std::size_t kLongest = std::size_t(1) << 16;
+  std::istringstream lines(startOf(file, kLongest));
+  std::map<std::string, std::string> values;
+  for (std::string line; !values.contains("ElementDataFile") && std::getline(lines, line);) {
+    const std::size_t sign = std::min(line.find('='), line.size());
+    std::istringstream key(line.substr(0, sign));
+    std::string name, value;
+    key >> name;
+    std::istringstream rest(line.substr(std::min(sign + 1, line.size())));
+    std::getline(rest >> std::ws, value);
+    values[name] = value;
+  }
+  for (const char* needed : {"NDims", "DimSize", "ElementType", "ElementDataFile"})
+    if (values[needed].empty()) failDamaged(file, fmt::format("its header has no {}", needed));
+  if (!values["ElementType"].starts_with("MET_")) failDamaged(file, "its ElementType is none of MetaImage");
+  std::istringstream sizes(values["DimSize"]);
+  const auto given = std::distance(std::istream_iterator<std::int64_t>(sizes), std::istream_iterator<std::int64_t>());
+  if (std::to_string(given) != values["NDims"]) failDamaged(file, fmt::format("its DimSize has {} numbers, and its NDims is {}", given, values["NDims"]));
+}
+
+/// Likewise the library of NIfTI. Fails for values that are no single numbers as well.
+void checkNiftiHeader(const std::filesystem::path& file) {
+  constexpr std::size_t kBytes = 348, kType = 70;
+  const std::string start = startOf(file, kBytes);
+  if (start.size() < kBytes) failDamaged(file, "it ends in its header");
+  const bool isSwapped = start[0] == 0;
+  const int type = std::uint8_t(start[kType + (isSwapped ? 1 : 0)]) | std::uint8_t(start[kType + (isSwapped ? 0 : 1)]) << 8;
+  if (!niftiType(type))
+    fail(ErrorKind::Input, "'{}' has values of NIfTI's type {}, and scans have one whole number or float of up to 64 bits a voxel: convert it",
+         file.string(), type);
+}
+
+class ItkScan : public ScanReader {
+ public:
+  ItkScan(const std::filesystem::path& file, ItkFormat format) : path_(file), format_(format), io_(readerOf(format)) {
+    if (format_ == ItkFormat::MetaImage) checkMetaHeader(path_);
+    if (format_ == ItkFormat::Nifti) checkNiftiHeader(path_);
+    quietItk(path_, [&] {
+      const TiffErrors errors;
+      io_->SetFileName(path_.string());
+      if (!io_->CanReadFile(path_.string().c_str())) failDamaged(path_, fmt::format("it is no {} file", nameOf(format)));
+      io_->ReadImageInformation();
+      errors.check(path_);
+    });
+    header_ = headerOf(path_, *io_);
+    header_.format = nameOf(format);
+    takeTimeSteps();
+    describeNifti();
+    const bool holdsValues = !hasEnding(".nhdr") && !hasEnding(".mhd"), isPlain = format_ == ItkFormat::Vtk || hasEnding(".nii");
+    if (holdsValues)
+      checkPayload(path_, header_.samples() * std::uint64_t(header_.timeSteps) * bytesOf(header_.type), std::filesystem::file_size(path_),
+                   !isPlain);
+  }
+
+  void read(int timeStep, const SampleSink& sink, const Progress& progress) override {
+    if (format_ == ItkFormat::Nifti) return readNiftiValues(path_, header_, timeStep, sink, progress);
+    if (progress) progress("reading the scan", 0.0);
+    const unsigned dimensions = io_->GetNumberOfDimensions();
+    itk::ImageIORegion region(dimensions);
+    for (unsigned axis = 0; axis < dimensions; ++axis) region.SetSize(axis, io_->GetDimensions(axis));
+    io_->SetIORegion(region);
+    const auto buffer = std::make_unique_for_overwrite<std::byte[]>(bytesToRead());
+    readWhole({buffer.get(), bytesToRead()});
+    const std::uint64_t step = header_.samples() * bytesOf(header_.type) * std::uint64_t(timeStep);
+    sink({.samples = buffer.get() + step, .type = header_.type, .first = glm::ivec3(0), .extent = header_.dimensions});
+  }
+
+  std::uint64_t bytesToRead() const override {
+    if (format_ == ItkFormat::Nifti) return bytesToReadNifti(header_);
+    return header_.samples() * bytesOf(header_.type) * std::uint64_t(header_.timeSteps);
+  }
+
+ private:
+  bool hasEnding(std::string_view ending) const {
+    std::string name = path_.filename().string();
+    std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+    return name.ends_with(ending);
+  }
+
+  /// Reads all values. ITK says nothing of some files that end too early, and leaves the last values as they were: these differ then
+  /// where they were set otherwise before.
+  void readWhole(std::span<std::byte> bytes) const {
+    const std::span<std::byte> last = bytes.last(bytesOf(header_.type));
+    const auto readOver = [&](std::byte before) {
+      std::ranges::fill(last, before);
+      quietItk(path_, [&] {
+        const TiffErrors errors;
+        io_->Read(bytes.data());
+        errors.check(path_);
+      });
+      return std::vector<std::byte>(last.begin(), last.end());
+    };
+    constexpr std::byte kOne{0xa5}, kOther{0x5a};
+    const std::vector<std::byte> once = readOver(kOne);
+    if (std::ranges::find(once, kOne) != once.end() && readOver(kOther) != once) failDamaged(path_, "its values end too early");
+  }
+
+  /// A fourth axis is time; of others there must be one step.
+  void takeTimeSteps() {
+    constexpr unsigned kTime = 3;
+    constexpr itk::SizeValueType kMostSteps = 1 << 20;
+    for (unsigned axis = kTime; axis < io_->GetNumberOfDimensions(); ++axis) {
+      const itk::SizeValueType steps = io_->GetDimensions(axis);
+      if (axis > kTime && steps != 1)
+        fail(ErrorKind::Input, "'{}' has {} dimensions, and scans have three, or four with time: take a part of it", path_.string(),
+             io_->GetNumberOfDimensions());
+      if (steps < 1 || steps > kMostSteps) failDamaged(path_, fmt::format("its header says {} time steps", steps));
+      if (axis == kTime) header_.timeSteps = int(steps);
+    }
+  }
+
+  /// What ITK has applied to the values of NIfTI.
+  void describeNifti() {
+    const auto* const nifti = dynamic_cast<const itk::NiftiImageIO*>(io_.GetPointer());
+    if (!nifti) return;
+    const auto& dictionary = io_->GetMetaDataDictionary();
+    const double slope = numberIn(dictionary, "scl_slope").value_or(0.0), intercept = numberIn(dictionary, "scl_inter").value_or(0.0);
+    if (slope != 0.0 && (slope != 1.0 || intercept != 0.0)) header_.rescale = glm::dvec2(slope, intercept);
+    if (const auto code = numberIn(dictionary, "datatype")) header_.type = niftiType(int(*code)).value_or(header_.type);
+  }
+
+  const std::filesystem::path path_;
+  const ItkFormat format_;
+  const itk::ImageIOBase::Pointer io_;
+};
+
+}  // namespace
+
+std::unique_ptr<ScanReader> openItkScan(const std::filesystem::path& file, ItkFormat format) {
+  return std::make_unique<ItkScan>(file, format);
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,235 @@
+#include "engine/volume/scan_file.h"
+
+#include <algorithm>
+#include <array>
+#include <cctype>
+#include <cmath>
+#include <fstream>
+#include <new>
+#include <system_error>
+
+#include "engine/core/crash_note.h"
+#include "engine/core/error.h"
+#include "engine/core/input_file.h"
+#include "engine/core/machine.h"
+#include "engine/core/printable.h"
+#include "engine/volume/scan_reader.h"
+#include "engine/volume/volume_of_scalars.h"
+
+namespace freevoxels {
+
+namespace {
+
+namespace fs = std::filesystem;
+
+/// How a file is read. Unknown are those of formats that are refused.
+enum class Format { Nrrd, MetaImage, Nifti, Tiff, Vtk, Vti, Dicom, Raw, Unknown };
+
+struct Ending {
+  std::string_view ending;
+  Format format;
+};
+constexpr std::array<Ending, 14> kEndings{{{".nii", Format::Nifti},
+                                           {".nii.gz", Format::Nifti},
+                                           {".nrrd", Format::Nrrd},
+                                           {".nhdr", Format::Nrrd},
+                                           {".mha", Format::MetaImage},
+                                           {".mhd", Format::MetaImage},
+                                           {".vti", Format::Vti},
+                                           {".vtk", Format::Vtk},
+                                           {".dcm", Format::Dicom},
+                                           {".ima", Format::Dicom},
+                                           {".tif", Format::Tiff},
+                                           {".tiff", Format::Tiff},
+                                           {".raw", Format::Raw},
+                                           {".mrc", Format::Unknown}}};
+
+std::string lowerName(const fs::path& file) {
+  std::string name = file.filename().string();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return name;
+}
+
+const Ending* endingOf(const fs::path& file) {
+  const std::string name = lowerName(file);
+  const auto found = std::ranges::find_if(kEndings, [&](const Ending& one) { return name.ends_with(one.ending); });
+  return found == kEndings.end() ? nullptr : &*found;
+}
+
+/// Whether the file begins as DICOM's do, whatever its name.
+bool hasDicomSignature(const fs::path& file) {
+  constexpr std::size_t kPreamble = 128;
+  char bytes[kPreamble + 4] = {};
+  std::error_code error;
+  if (!fs::is_regular_file(file, error)) return false;
+  std::ifstream stream(file, std::ios::binary);
+  stream.read(bytes, sizeof(bytes));
+  return stream && std::string_view(bytes + kPreamble, 4) == "DICM";
+}
+
+Format formatOf(const fs::path& file, const ScanRequest& request) {
+  if (request.raw) return Format::Raw;
+  if (const Ending* ending = endingOf(file)) return ending->format;
+  return Format::Dicom;
+}
+
+std::unique_ptr<ScanReader> open(const fs::path& file, Format format, const ScanRequest& request) {
+  switch (format) {
+    case Format::Nrrd:
+      return openItkScan(file, ItkFormat::Nrrd);
+    case Format::MetaImage:
+      return openItkScan(file, ItkFormat::MetaImage);
+    case Format::Nifti:
+      return openItkScan(file, ItkFormat::Nifti);
+    case Format::Tiff:
+      return openItkScan(file, ItkFormat::Tiff);
+    case Format::Vtk:
+      return openItkScan(file, ItkFormat::Vtk);
+    case Format::Vti:
+      return openVtiScan(file, request.array);
+    case Format::Dicom:
+      return openDicomScan(file, request.series);
+    case Format::Raw: {
+      const std::optional<RawLayout> layout = request.raw ? request.raw : layoutOfName(file);
+      if (!layout)
+        fail(ErrorKind::Input, "'{}' has values without a header: say what they are with {}, or name it NAME_256x256x128_uint8.raw",
+             file.string(), Parameter("raw", "WxHxD,TYPE"));
+      return openRawScan(file, *layout);
+    }
+    case Format::Unknown:
+      break;
+  }
+  fail(ErrorKind::Input, "'{}' is an MRC map, which is not read: convert it to NRRD or NIfTI", file.string());
+}
+
+/// Fails for parts of the request that the file has no use for.
+void checkRequest(const fs::path& file, Format format, const ScanRequest& request) {
+  if (request.series && format != Format::Dicom)
+    fail(ErrorKind::Usage, "{} chooses among the series of a DICOM folder, and '{}' is none", Parameter("series"), file.string());
+  if (!request.array.empty() && format != Format::Vti)
+    fail(ErrorKind::Usage, "{} chooses among several, and '{}' has one grid of values", Parameter("grid"), file.string());
+}
+
+/// The sides of the box that the header says, with the request's spacing.
+void space(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
+  if (!spacing) return;
+  for (int axis = 0; axis < 3; ++axis) {
+    const double length = glm::length(header.indexToWorld[axis]);
+    glm::dvec3 unit(0.0);
+    unit[axis] = 1.0;
+    const glm::dvec3 direction = length > 0.0 && std::isfinite(length) ? glm::dvec3(header.indexToWorld[axis]) / length : unit;
+    header.indexToWorld[axis] = glm::dvec4(direction * (*spacing)[axis], 0.0);
+  }
+}
+
+struct Opened {
+  std::unique_ptr<ScanReader> reader;
+  ScanHeader header;
+};
+
+/// Runs `work`, and says of what a library throws which file it is about.
+template <typename Work>
+auto guarded(const fs::path& file, const Work& work) {
+  const CrashNote note(fmt::format("cannot read '{}': the file is damaged; copy or download it again", printable(file.string())));
+  try {
+    return work();
+  } catch (const std::bad_alloc&) {
+    fail(ErrorKind::OutOfMemory, "not enough memory to read '{}'; free some, or resample or crop the scan", file.string());
+  } catch (const std::system_error& error) {
+    fail(ErrorKind::Input, "cannot read '{}': {}", file.string(), error.code().message());
+  }
+}
+
+Opened openScan(const fs::path& file, const ScanRequest& request) {
+  std::error_code error;
+  const bool isFolder = fs::is_directory(file, error);
+  if (!isFolder) checkInputFile("scan", file);
+  const Format format = isFolder ? Format::Dicom : formatOf(file, request);
+  checkRequest(file, format, request);
+  Opened opened{.reader = open(file, format, request), .header = {}};
+  opened.header = opened.reader->header();
+  space(opened.header, request.spacing);
+  const int step = request.timeStep.value_or(0);
+  if (step >= opened.header.timeSteps)
+    fail(ErrorKind::Usage, "{} is none of '{}', which has {} time step{}, counted from 0", Parameter("time-step", fmt::format("{}", step)),
+         file.string(), opened.header.timeSteps, opened.header.timeSteps == 1 ? "" : "s");
+  return opened;
+}
+
+/// Fails before memory is taken.
+void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximumVoxels) {
+  const glm::ivec3 size = opened.header.dimensions;
+  const std::uint64_t voxels = opened.header.samples();
+  const std::uint64_t bytes = ScalarBricks::bytesOf(voxels / std::tuple_size_v<ScalarBricks::Brick>, size) + opened.reader->bytesToRead();
+  if (voxels > maximumVoxels)
+    fail(ErrorKind::OutOfMemory,
+         "'{}' is too large: its {} x {} x {} voxels are more than the {} that are possible here; resample or crop it", file.string(),
+         size.x, size.y, size.z, maximumVoxels);
+  if (bytes > machineMemoryBytes())
+    fail(ErrorKind::OutOfMemory,
+         "'{}' is too large: reading its {} x {} x {} voxels takes {} MiB, and this machine has {}; resample or crop it", file.string(),
+         size.x, size.y, size.z, bytes >> 20, machineMemoryBytes() >> 20);
+}
+
+}  // namespace
+
+void checkEdges(const fs::path& file, const glm::i64vec3& dimensions) {
+  constexpr std::int64_t kLongestEdge = 1 << 20;
+  for (int axis = 0; axis < 3; ++axis)
+    if (dimensions[axis] < 1 || dimensions[axis] > kLongestEdge)
+      failDamaged(file, fmt::format("its header says {} x {} x {} voxels", dimensions.x, dimensions.y, dimensions.z));
+}
+
+void checkPayload(const fs::path& file, std::uint64_t bytes, std::uint64_t fileBytes, bool isCompressed) {
+  constexpr std::uint64_t kLargestRatio = 1032;  // of zlib
+  if (bytes <= fileBytes || (isCompressed && bytes / kLargestRatio <= fileBytes)) return;
+  failDamaged(file, fmt::format("its header says {} bytes of values, and the file has {}", bytes, fileBytes));
+}
+
+bool isScanFile(const fs::path& file) {
+  std::error_code error;
+  return endingOf(file) != nullptr || fs::is_directory(file, error) || hasDicomSignature(file);
+}
+
+bool hasScanEnding(const fs::path& file) {
+  return endingOf(file) != nullptr;
+}
+
+std::span<const std::string_view> scanEndings() {
+  static const std::vector<std::string_view> endings = [] {
+    std::vector<std::string_view> all;
+    for (const Ending& one : kEndings)
+      if (one.format != Format::Unknown) all.push_back(one.ending);
+    return all;
+  }();
+  return endings;
+}
+
+std::string stemOf(const fs::path& file) {
+  const Ending* const ending = endingOf(file);
+  if (!ending) return (file.has_filename() ? file : file.parent_path()).stem().string();
+  const std::string name = file.filename().string();
+  return name.substr(0, name.size() - ending->ending.size());
+}
+
+ScanHeader readScanHeader(const fs::path& file, const ScanRequest& request) {
+  return guarded(file, [&] { return openScan(file, request).header; });
+}
+
+Volume readScan(const fs::path& file, const ScanRequest& request) {
+  return guarded(file, [&] {
+    const Opened opened = openScan(file, request);
+    checkSize(file, opened, request.maximumVoxels);
+    ScanVoxels voxels(opened.header.dimensions);
+    opened.reader->read(
+        request.timeStep.value_or(0), [&](const SampleBlock& block) { voxels.put(block); }, request.progress);
+    const std::string name = (file.has_filename() ? file : file.parent_path()).filename().string();  // "ct" of "scans/ct/"
+    Volume volume = volumeOfScalars(voxels.take(), opened.header.indexToWorld, request.noData,
+                                    opened.header.array.empty() ? name : name + " " + opened.header.array, request.labels);
+    volume.up = {0.0, 0.0, 1.0};
+    volume.upReason = "it is a scan";
+    return volume;
+  });
+}
+
+}  // namespace freevoxels

@@ -1,0 +1,66 @@
+#pragma once
+// Scans: files that hold one box of samples, such as those of medicine, microscopy and simulation. Which formats there are is said here,
+// and nowhere else: isScanFile(), scanEndings() and readScan() are all that the rest of the program knows of them.
+
+#include <cstdint>
+#include <filesystem>
+#include <glm/glm.hpp>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "engine/core/stages.h"
+#include "engine/volume/raw_layout.h"
+#include "engine/volume/sample_type.h"
+#include "engine/volume/scan.h"
+#include "engine/volume/volume.h"
+
+namespace freevoxels {
+
+/// What is read of a file, and how.
+struct ScanRequest {
+  std::string array;                  ///< of a file with several arrays; empty: that which the file calls its scalars, or the only one
+  std::optional<RawLayout> raw;       ///< the file has values without a header; else the layout of its name (layoutOfName)
+  std::optional<std::string> series;  ///< UID of a DICOM series; else the only one of the folder, or that of the file
+  std::optional<int> timeStep;        ///< of a file with several, from 0; else the first
+  std::optional<glm::dvec3> spacing;  ///< millimetres between voxels along the axes of the box, instead of the file's; above 0
+  std::optional<NoData> noData;       ///< else the padding of a scan (scan.h)
+  const Labels* labels = nullptr;     ///< how the values are drawn if they are labels; else null
+  std::uint64_t maximumVoxels = 0;    ///< of the box
+  Progress progress = {};             ///< may abandon it
+};
+
+/// What a scan's header says.
+struct ScanHeader {
+  std::string format;  ///< "NIfTI", "DICOM series of 120 slices"
+  std::string array;   ///< name of the values; empty where they have none
+  glm::ivec3 dimensions{0};
+  int timeSteps = 1;
+  SampleType type = SampleType::U8;  ///< of the values in the file
+  /// From voxels to the world: LPS millimetres, x towards the patient's left, y towards the back, z towards the head.
+  glm::dmat4 indexToWorld{1.0};
+  std::optional<glm::dvec2> rescale;  ///< slope and intercept, which the values that are read have been multiplied by and added to
+
+  std::uint64_t samples() const { return std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z); }
+};
+
+/// Whether it is read as a scan: by the ending of its name, as a folder, or as DICOM by its content.
+bool isScanFile(const std::filesystem::path& file);
+/// Whether the name alone says so.
+bool hasScanEnding(const std::filesystem::path& file);
+/// The endings of names that are those of scans, in lower case: ".nii.gz", ".nrrd", ...
+std::span<const std::string_view> scanEndings();
+/// The name of a file without its ending, of which those of scans may have two parts: "head" of "a/head.nii.gz".
+std::string stemOf(const std::filesystem::path& file);
+
+/// Fails as readScan does, but reads no values.
+ScanHeader readScanHeader(const std::filesystem::path& file, const ScanRequest& request);
+/// Reads the samples as floats, in which all values of 8 and 16 bits are exact. Up is +z, towards the head. Fails with ErrorKind::Input for
+/// a file that is missing, damaged, shorter than its header says, of vectors or colours, or has several series of which none is chosen;
+/// with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels` or this machine's memory, before allocating it; and with ErrorKind::Usage
+/// for parts of the request that the file has no use for.
+Volume readScan(const std::filesystem::path& file, const ScanRequest& request);
+
+}  // namespace freevoxels

@@ -1,0 +1,51 @@
+#pragma once
+// Internal to the readers of scans.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "engine/core/error.h"
+#include "engine/core/stages.h"
+#include "engine/volume/raw_layout.h"
+#include "engine/volume/scan_file.h"
+#include "engine/volume/scan_voxels.h"
+
+namespace freevoxels {
+
+/// A scan of which the header was read and checked.
+class ScanReader {
+ public:
+  virtual ~ScanReader() = default;
+  const ScanHeader& header() const { return header_; }
+  /// Hands out all samples of a time step, rescaled, in blocks. Fails with ErrorKind::Input where the file is damaged.
+  virtual void read(int timeStep, const SampleSink& sink, const Progress& progress) = 0;
+  /// Host memory that read() needs besides the sink's.
+  virtual std::uint64_t bytesToRead() const = 0;
+
+ protected:
+  ScanHeader header_;
+};
+
+std::unique_ptr<ScanReader> openRawScan(const std::filesystem::path& file, const RawLayout& layout);
+/// `array`: as in ScanRequest.
+std::unique_ptr<ScanReader> openVtiScan(const std::filesystem::path& file, const std::string& array);
+
+/// The formats of single files that ITK reads.
+enum class ItkFormat { Nrrd, MetaImage, Nifti, Tiff, Vtk };
+std::unique_ptr<ScanReader> openItkScan(const std::filesystem::path& file, ItkFormat format);
+/// A DICOM file, the series that it is of, or a series of a folder.
+std::unique_ptr<ScanReader> openDicomScan(const std::filesystem::path& file, const std::optional<std::string>& series);
+
+[[noreturn]] inline void failDamaged(const std::filesystem::path& file, std::string_view why) {
+  fail(ErrorKind::Input, "cannot read '{}': {}; the file is damaged, or was cut: copy or download it again", file.string(), why);
+}
+
+/// Fails for edges of a box that are not 1 to 2^20.
+void checkEdges(const std::filesystem::path& file, const glm::i64vec3& dimensions);
+/// Fails where a file of `fileBytes` cannot hold `bytes` of values, not even compressed by zlib.
+void checkPayload(const std::filesystem::path& file, std::uint64_t bytes, std::uint64_t fileBytes, bool isCompressed);
+
+}  // namespace freevoxels
