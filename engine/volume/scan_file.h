@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "engine/core/stages.h"
+#include "engine/volume/labels.h"
 #include "engine/volume/raw_layout.h"
 #include "engine/volume/sample_type.h"
 #include "engine/volume/scan.h"
