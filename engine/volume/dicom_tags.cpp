@@ -138,7 +138,7 @@ std::optional<DicomTags> DicomTags::read(const std::filesystem::path& file) {
   DicomTags tags;
   Syntax syntax;  // of the file's own elements
   bool isMeta = true;
-  while (reader.left() > 0 && !tags.has(kPixels)) {
+  while (reader.left() > 0) {
     const std::uint64_t before = reader.left();
     Element element = reader.next(syntax);
     if (isMeta && element.tag >> 16 != kSyntax >> 16) {

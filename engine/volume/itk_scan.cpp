@@ -129,8 +129,14 @@ std::string startOf(const std::filesystem::path& file, std::size_t most) {
   return start;
 }
 
-/// MetaIO prints what it misses in a header, so that it is looked for before.
-void checkMetaHeader(const std::filesystem::path& file) {
+/// Where the values of a file are, as far as that can be told.
+struct Payload {
+  std::optional<std::uint64_t> bytes;
+  bool isCompressed = false;
+};
+
+/// MetaIO prints what it misses, so that it is looked for before.
+Payload checkMetaHeader(const std::filesystem::path& file) {
   constexpr std::size_t kLongest = std::size_t(1) << 16;
   std::istringstream lines(startOf(file, kLongest));
   std::map<std::string, std::string> values;
@@ -149,6 +155,16 @@ void checkMetaHeader(const std::filesystem::path& file) {
   std::istringstream sizes(values["DimSize"]);
   const auto given = std::distance(std::istream_iterator<std::int64_t>(sizes), std::istream_iterator<std::int64_t>());
   if (std::to_string(given) != values["NDims"]) failDamaged(file, fmt::format("its DimSize has {} numbers, and its NDims is {}", given, values["NDims"]));
+  Payload payload{.isCompressed = values["CompressedData"].starts_with('T') || values["CompressedData"].starts_with('1')};
+  std::string where = values["ElementDataFile"];
+  while (!where.empty() && std::isspace(static_cast<unsigned char>(where.back())) != 0) where.pop_back();
+  if (where == "LOCAL" || where == "Local" || where == "local")
+    payload.bytes = std::filesystem::file_size(file) - std::uint64_t(std::max<std::streamoff>(lines.tellg(), 0));
+  else if (where.find_first_of(" %") == std::string::npos && where != "LIST")
+    payload.bytes = std::filesystem::file_size(file.parent_path() / where);  // a missing file is an error
+  const bool isText = values["BinaryData"].starts_with('F');
+  if (isText) payload.bytes.reset();
+  return payload;
 }
 
 /// Likewise the library of NIfTI. Fails for values that are no single numbers as well.
@@ -166,7 +182,9 @@ void checkNiftiHeader(const std::filesystem::path& file) {
 class ItkScan : public ScanReader {
  public:
   ItkScan(const std::filesystem::path& file, ItkFormat format) : path_(file), format_(format), io_(readerOf(format)) {
-    if (format_ == ItkFormat::MetaImage) checkMetaHeader(path_);
+    Payload payload{.bytes = std::filesystem::file_size(path_), .isCompressed = format_ != ItkFormat::Vtk && !hasEnding(".nii")};
+    if (hasEnding(".nhdr")) payload.bytes.reset();
+    if (format_ == ItkFormat::MetaImage) payload = checkMetaHeader(path_);
     if (format_ == ItkFormat::Nifti) checkNiftiHeader(path_);
     quietItk(path_, [&] {
       const TiffErrors errors;
@@ -179,10 +197,9 @@ class ItkScan : public ScanReader {
     header_.format = nameOf(format);
     takeTimeSteps();
     describeNifti();
-    const bool holdsValues = !hasEnding(".nhdr") && !hasEnding(".mhd"), isPlain = format_ == ItkFormat::Vtk || hasEnding(".nii");
-    if (holdsValues)
-      checkPayload(path_, header_.samples() * std::uint64_t(header_.timeSteps) * bytesOf(header_.type), std::filesystem::file_size(path_),
-                   !isPlain);
+    if (payload.bytes)
+      checkPayload(path_, header_.samples() * std::uint64_t(header_.timeSteps) * bytesOf(header_.type), *payload.bytes,
+                   payload.isCompressed);
   }
 
   void read(int timeStep, const SampleSink& sink, const Progress& progress) override {
