@@ -62,7 +62,7 @@ struct CubeDrawing::State {
   Error withNeed(const Error& error, const Camera& camera, const FrameSettings& wanted);
   void march(Frame& frame);
   shader::GatherFrame latticeOf(const Camera& camera, const FrameSettings& settings);
-  shader::GatherFrame frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level) const;
+  shader::GatherFrame frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level, const VoxelRange& region) const;
   /// What is drawn at a time.
   struct Cube {
     int level = 0;
@@ -71,7 +71,8 @@ struct CubeDrawing::State {
   };
   std::vector<Cube> cubesOf(const Frame& frame, int level);
   void drawLevel(const Frame& frame, int level, std::span<const Cube> cubes, bool isLastLevel);
-  void drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& whole, const Cube& cube, bool isLast);
+  void drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& inRegion, const VoxelRange& region,
+                const Cube& cube, bool isLast);
   void resolve(const Frame& frame, const FrameTargets& targets);
 };
 

@@ -1,6 +1,7 @@
 #include "engine/cube_level.h"
 
 #include <algorithm>
+#include <tuple>
 #include <utility>
 
 namespace freevoxels {
@@ -8,17 +9,11 @@ namespace freevoxels {
 CubeLevel::CubeLevel(std::shared_ptr<const VolumeSource> from, int level, const Classification& classification)
     : source{.source = std::move(from), .level = level, .classification = classification},
       onDevice(outlineOnDevice(outline(), classification)) {
-  constexpr int kBricks = kCubeEdge / ScalarBricks::kEdge;
-  const Cells around = bricksAround(source);
-  Cells met((outline().dimensions + kCubeEdge - 1) / kCubeEdge);
-  for (glm::ivec3 brick(0); brick.z < around.dimensions.z; ++brick.z)
-    for (brick.y = 0; brick.y < around.dimensions.y; ++brick.y)
-      for (brick.x = 0; brick.x < around.dimensions.x; ++brick.x) {
-        if (around.at(brick) == 0) continue;
-        std::uint8_t& isMet = met.values[met.index(brick / kBricks)];
-        if (isMet == 0) cubes.push_back(brick / kBricks);
-        isMet = 1;
-      }
+  using Bricks = SparseGrid<std::uint8_t>;
+  static_assert(kCubeEdge == Bricks::kNodeEdge * ScalarBricks::kEdge);
+  const Bricks around = bricksAround(source);
+  cubes.assign(around.places().begin(), around.places().end());
+  std::ranges::sort(cubes, {}, [](glm::ivec3 cube) { return std::tuple(cube.z, cube.y, cube.x); });
 }
 
 void CubeLevel::prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times,

@@ -2,6 +2,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <glm/gtc/matrix_transform.hpp>
+#include <utility>
 
 #include "engine/cube_drawing_state.h"
 #include "engine/octree/volume_builder.h"
@@ -21,9 +23,28 @@ int behindEye(glm::ivec3 cell, const RaySource& eye) {
     if (eye.atInfinity)
       sum += eye.place[axis] > 0.0 ? -cell[axis] : cell[axis];
     else
-      sum += std::abs(cell[axis] - int(std::floor(std::clamp(eye.place[axis] / kCubeEdge, -1e6, 1e6))));
+      sum += std::abs(cell[axis] - int(std::floor(std::clamp(eye.place[axis] / kCubeEdge, -1e8, 1e8))));
   }
   return sum;
+}
+
+/// Edge of the regions of a volume in which positions on rays are counted from a place of their own, in voxels: from far away, single
+/// precision would not tell neighbouring positions apart. A volume that is not longer is a region.
+constexpr int kRegionEdge = 1 << 13;
+static_assert(kRegionEdge % kCubeEdge == 0);
+
+/// The region of a cube, with the voxels around it that rays read.
+VoxelRange regionOf(const VoxelRange& cube, glm::ivec3 dimensions) {
+  const glm::ivec3 first = cube.first / kRegionEdge * kRegionEdge;
+  return {glm::max(first - kCubeEdge, 0), first + glm::min(dimensions - first, kRegionEdge + kCubeEdge)};
+}
+
+/// The part of a level in a region, as a volume of its own.
+DeviceVolume partOf(const CubeLevel& level, const VoxelRange& region, const Classification& classification) {
+  Volume outline = level.outline();
+  outline.dimensions = region.extent();
+  outline.indexToWorld = glm::translate(outline.indexToWorld, glm::dvec3(region.first));
+  return outlineOnDevice(outline, classification);
 }
 
 /// Whether a frame reads slices of the cube.
@@ -70,10 +91,12 @@ shader::GatherFrame CubeDrawing::State::latticeOf(const Camera& camera, const Fr
   return makeGatherFrame(base.onDevice, camera, settings, constants.detail, constants.endTransmittance);
 }
 
-/// The frame of a level whose blocks take the place of voxels.
-shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level) const {
-  shader::GatherFrame result =
-      makeGatherFrame(cubeLevel.onDevice, frame.camera, frame.settings, {}, double(frame.lattice.endTransmittance));
+/// The frame of a region of a level whose blocks take the place of voxels.
+shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level, const VoxelRange& region) const {
+  const bool isWhole = region.extent() == cubeLevel.outline().dimensions;
+  const DeviceVolume part = isWhole ? DeviceVolume() : partOf(cubeLevel, region, frame.classification);
+  shader::GatherFrame result = makeGatherFrame(isWhole ? cubeLevel.onDevice : part, frame.camera, frame.settings, {},
+                                               double(frame.lattice.endTransmittance));
   result.samples = frame.lattice.samples;
   result.firstSample = frame.lattice.firstSample;
   result.pitch = frame.lattice.pitch;
@@ -84,7 +107,9 @@ shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLe
   result.seenExtent = frame.lattice.seenExtent;
   result.holdout = frame.lattice.holdout;
   for (int axis = 0; axis < 3; ++axis)
-    for (int sign = 0; sign < 2; ++sign) result.axes[axis].slices[sign][0] = frame.lattice.axes[axis].slices[sign][level];
+    for (int sign = 0; sign < 2; ++sign)
+      result.axes[axis].slices[sign][0] =
+          glm::clamp(frame.lattice.axes[axis].slices[sign][level] - region.first[axis], 0, region.extent()[axis]);
   return result;
 }
 
@@ -92,7 +117,7 @@ shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLe
 std::vector<CubeDrawing::State::Cube> CubeDrawing::State::cubesOf(const Frame& frame, int level) {
   const CubeLevel& cubeLevel = levelAt(level);
   const RaySource eye = eyeSource(frame.camera, cubeLevel.outline().indexToWorld);
-  const shader::GatherFrame whole = frameOf(frame, cubeLevel, level);
+  const shader::GatherFrame whole = frameOf(frame, cubeLevel, level, {glm::ivec3(0), cubeLevel.outline().dimensions});
   std::vector<glm::ivec3> cells = cubeLevel.cubes;
   std::ranges::stable_sort(cells, {}, [&](glm::ivec3 cell) { return behindEye(cell, eye); });
   std::vector<Cube> cubes;
@@ -112,16 +137,21 @@ void CubeDrawing::State::drawLevel(const Frame& frame, int level, std::span<cons
   if (frame.settings.lighting) {
     cubeLevel.prepareLights(device, frame.allLights, times, frame.progress);
   }
-  const shader::GatherFrame whole = frameOf(frame, cubeLevel, level);
+  VoxelRange region;
+  shader::GatherFrame inRegion{};
   for (std::size_t i = 0; i < cubes.size(); ++i) {
     if (frame.progress) frame.progress("drawing cubes", double(i) / double(cubes.size()));
-    drawCube(frame, cubeLevel, whole, cubes[i], isLastLevel && i + 1 == cubes.size());
+    const VoxelRange here = regionOf(cubes[i].voxels, cubeLevel.outline().dimensions);
+    if (here != std::exchange(region, here)) inRegion = frameOf(frame, cubeLevel, level, region);
+    drawCube(frame, cubeLevel, inRegion, region, cubes[i], isLastLevel && i + 1 == cubes.size());
     ++cubesRead[std::size_t(level)];
   }
 }
 
-void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& whole, const Cube& cube,
-                                  bool isLast) {
+/// Positions on rays in `inRegion` are counted from the first voxel of `region`.
+void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& inRegion,
+                                  const VoxelRange& region, const Cube& cube, bool isLast) {
+  const glm::ivec3 origin = region.first;
   const VoxelRange box = withHalo(cube.voxels, cubeLevel.outline().dimensions);
   Volume volume;
   {
@@ -130,7 +160,7 @@ void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel
   }
   const BuiltVolume built = buildVolume(device, volume, frame.classification, times, {}, BuiltLevels::Voxels);
   const SurroundingLight light{
-      .dimensions = cubeLevel.outline().dimensions, .first = box.first, .codes = [&](int number, const GatherVolume& inBox) {
+      .dimensions = cubeLevel.outline().dimensions - origin, .first = box.first - origin, .codes = [&](int number, const GatherVolume& inBox) {
         return codesOf(*cubeLevel.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
       }};
   GatherVolume inBox(device, volume, frame.classification, built, times, &light);
@@ -142,16 +172,20 @@ void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel
                                       .lighting = frame.settings.lighting ? &*frame.settings.lighting : nullptr,
                                       .lights = nullptr,
                                       .scattered = frame.isFirst() ? frame.scattered : nullptr,
-                                      .axes = {someRayHasAxis(whole, 0), someRayHasAxis(whole, 1), someRayHasAxis(whole, 2)}};
+                                      .axes = {someRayHasAxis(inRegion, 0), someRayHasAxis(inRegion, 1), someRayHasAxis(inRegion, 2)}};
   inBox.prepare(shading);
   Commands commands(device);
   inBox.record(commands, shading);
-  shader::GatherFrame gatherFrame = whole;
+  shader::GatherFrame gatherFrame = inRegion;
   inBox.describe(gatherFrame);  // what record() has made too
   gatherFrame.scattered.toCells *= float(1 << cube.level);
-  gatherFrame.levels[0].dimensions = cubeLevel.outline().dimensions;
-  gatherFrame.cube = {
-      .first = box.first, .begin = cube.voxels.first, .end = cube.voxels.end, .corner = cube.seen.first, .extent = cube.seen.extent};
+  gatherFrame.scattered.firstCell += gatherFrame.scattered.toCells * glm::vec3(origin);
+  gatherFrame.levels[0].dimensions = region.extent();
+  gatherFrame.cube = {.first = box.first - origin,
+                      .begin = cube.voxels.first - origin,
+                      .end = cube.voxels.end - origin,
+                      .corner = cube.seen.first,
+                      .extent = cube.seen.extent};
   const auto march = [&](Commands& recording) {
     gather->recordCube(recording, inBox, gatherFrame);
     recording.submitAndWait(frame.progress);

@@ -12,7 +12,7 @@ namespace freevoxels {
 std::uint64_t CubeDrawing::State::mostBricks() {
   constexpr int kBrick = ScalarBricks::kEdge;
   const CubeLevel& base = levelAt(0);
-  const Cells bricks = source->bricks();
+  const SparseGrid<std::uint8_t> bricks = source->bricks();
   std::uint64_t most = 0;
   for (const glm::ivec3 cube : base.cubes) {
     const VoxelRange box = withHalo(cubeVoxels(cube, base.outline().dimensions), base.outline().dimensions);
@@ -40,7 +40,7 @@ std::uint64_t CubeDrawing::State::leastBytes(const Camera& camera, const FrameSe
   const std::uint64_t built = 24, quads = sizeof(glm::uvec2) * (1 + slots) + (classification.emission ? 2 * sizeof(glm::uvec4) : 0);
   std::uint64_t largest = voxels * (built + slots * sizeof(std::uint16_t) + axes * quads);
   for (const Light& light : groups.all)
-    largest = std::max(largest, SweptLight::leastBytes(outline.dimensions, lightSource(light, outline.indexToWorld)));
+    largest = std::max(largest, SweptLight::leastBytes(levelAt(0).source, lightSource(light, outline.indexToWorld)));
   if (wanted.lighting && hasScatteredLight(*wanted.lighting, classification.emission.has_value()))
     largest = std::max(largest, scatteringBytes(outline.dimensions, wanted.lighting->phaseG != 0.0));
   constexpr std::uint64_t kSums = 3, kSumBytes = sizeof(glm::vec4) + sizeof(float);

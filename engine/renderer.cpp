@@ -8,6 +8,7 @@
 #include "engine/core/parameter.h"
 #include "engine/cube_drawing.h"
 #include "engine/merged_drawing.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/renderer_state.h"
 
 namespace freevoxels {
@@ -23,6 +24,15 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
   return active > machineMemoryBytes() / 2 / sizeof(float) ||
          exceedsDevice(device.memoryBytes(), maximumVoxels(device), outline.dimensions, active) ||
          leastGatherBytes(brickVoxels(source), outline.dimensions, outline.indexToWorld, nullptr, emits) > device.memoryBytes();
+}
+
+/// Instead of making blocks of a volume whose voxels cannot be numbered.
+[[noreturn]] void failUnnumbered(const Volume& outline, const std::string& whyNotCubes) {
+  const glm::ivec3 box = outline.dimensions;
+  fail(ErrorKind::OutOfMemory,
+       "a volume of {}x{}x{} voxels, {} of which have data, is drawn piece by piece alone, as no more than {} voxels can be numbered, and {}: "
+       "draw it by gathering with other shadows, or crop or resample it",
+       box.x, box.y, box.z, outline.activeVoxels, kMaxNumberedVoxels, whyNotCubes);
 }
 
 /// Instead of reading a file whose volume cannot be held.
@@ -130,6 +140,7 @@ auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& prog
   }
   drewInCubes_ = inCubes_ && !whyNotCubes;
   if (!drewInCubes_) {
+    if (isTooLarge_ && source_->outline().voxelCount() > kMaxNumberedVoxels) failUnnumbered(source_->outline(), *whyNotCubes);
     if (isTooLarge_ && !source_->isInMemory()) failTooLarge(device_, source_->outline(), *whyNotCubes);
     try {
       return drawWhole(whole(progress), settings);

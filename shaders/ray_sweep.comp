@@ -14,6 +14,8 @@
 // that change linearly between planes. Otherwise they are those in front of the planes' layers, each with the
 // extinction of its plane.
 layout(constant_id = 0) const bool kScalars = false;
+// Whether rays begin with the depths that are carried, those of what is between the volume and the source, and end with all depths in there.
+layout(constant_id = 1) const bool kBetween = false;
 
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
@@ -122,6 +124,7 @@ void main() {
     depth = carried[ray];
   else if (planes.x == 0 && !kScalars)
     depth = layer * sourceCut(atFirst, perPlane);
+  if (kBetween && planes.x / 2 >= begin) depth += carried[ray];
   Found last;
   if (kScalars) last = scalarAt(2 * pair - 1, atFirst + perPlane * float(2 * pair - 1));
   // Lavapipe executes the body of a loop that ends with its condition once less. For rays that have left, it repeats their last pair, from the
@@ -140,5 +143,5 @@ void main() {
     }
     Depths(pairAddress(fan, pair)).pairs[ray] = packUnorm2x16(sqrt(clamp(planeDepths / kOpaqueDepth, 0.0, 1.0)));
   } while (++pair < behind);
-  if (push.slab.end < fan.planeCount) carried[ray] = depth;
+  if (kBetween || push.slab.end < fan.planeCount) carried[ray] = depth;
 }

@@ -9,6 +9,7 @@
 #include "apps/common/baked_info.h"
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/renderer.h"
 #include "engine/volume/occupied_count.h"
 
@@ -46,6 +47,11 @@ GridInfo describeVolume(const Volume& volume) {
 }
 
 }  // namespace
+
+bool canBeWhole(const GridInfo& grid) {
+  const glm::dvec3 box(grid.renderDimensions);
+  return grid.unusable.empty() && box.x * box.y * box.z <= double(kMaxNumberedVoxels);
+}
 
 VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions) {
   const HierarchyLayout hierarchy(grid.renderDimensions);
@@ -104,6 +110,10 @@ nlohmann::ordered_json toJson(const GridInfo& grid) {
   if (grid.hasRange) json["range"] = {grid.minimum, grid.maximum};
   if (!grid.unusable.empty()) {
     json["not_drawable"] = grid.unusable;
+    return json;
+  }
+  if (!canBeWhole(grid)) {
+    json["host_bytes"] = grid.hostBytes;
     return json;
   }
   const VolumeMemory memory = memoryOf(grid, DirectionSet::Directions26);

@@ -23,7 +23,9 @@ std::vector<std::string> linesOf(const ScanHeader& scan);
 /// baked then fails with ErrorKind::Usage.
 std::shared_ptr<const fvx::FvxFile> checkedBaked(const InputDescription& input, bool check);
 
-/// Memory without voxel colours; of the whole box if the occupied blocks were not counted.
+/// Whether a grid can be drawn, and may be on a device as a whole: its voxels can be numbered.
+bool canBeWhole(const GridInfo& grid);
+/// Of a grid that may be on a device as a whole. Memory without voxel colours; of the whole box if the occupied blocks were not counted.
 VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions);
 /// Bytes stored for each occupied voxel with 26 directions.
 double bytesPerVoxel(const GridInfo& grid);

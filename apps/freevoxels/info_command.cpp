@@ -35,12 +35,15 @@ void printTable(const std::vector<GridInfo>& grids) {
     std::vector<std::string>& row = table.rows.back();
     for (const DirectionSet directions : {DirectionSet::Directions26, DirectionSet::Directions98}) {
       const VolumeMemory memory = memoryOf(grid, directions);
-      row.push_back(grid.unusable.empty() ? bytesText(memory.table) : "-");
-      row.push_back(grid.unusable.empty() ? bytesText(memory.peak()) : "-");
+      row.push_back(canBeWhole(grid) ? bytesText(memory.table) : "-");
+      row.push_back(canBeWhole(grid) ? bytesText(memory.peak()) : "-");
     }
     row.push_back(grid.storedBlocks.empty() ? "-" : fmt::format("{:.1f}", bytesPerVoxel(grid)));
     std::vector<std::string> uses = usesOf(grid);
-    if (!grid.unusable.empty()) uses.push_back("not drawable: " + grid.unusable);
+    if (!grid.unusable.empty())
+      uses.push_back("not drawable: " + grid.unusable);
+    else if (!canBeWhole(grid))
+      uses.emplace_back("drawn cube by cube");
     row.push_back(fmt::format("{}", fmt::join(uses, ", ")));
   }
   for (const std::string& line : table.lines()) fmt::print("{}\n", line);

@@ -1,18 +1,20 @@
 #include "engine/attenuation/plane_sweep.h"
 
 #include <algorithm>
-#include <cstring>
+#include <limits>
 #include <map>
 #include <optional>
 #include <system_error>
+#include <utility>
 
 #include "embedded/light_planes.h"
 #include "embedded/ray_sweep.h"
+#include "engine/attenuation/island_shadows.h"
+#include "engine/attenuation/islands.h"
 #include "engine/attenuation/ray_sweep.h"
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
 #include "engine/octree/device_volume.h"
-#include "engine/volume/coarse_cells.h"
 #include "engine/volume/transfer_table.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/gather_interface.h"
@@ -71,21 +73,54 @@ class VoxelValues {
 
 }  // namespace
 
-Cells bricksAround(const SourceLevel& level) {
-  return spread(level.source->bricks(level.level), -1, 1);
+SparseGrid<std::uint8_t> bricksAround(const SourceLevel& level) {
+  SparseGrid<std::uint8_t> around = level.source->bricks(level.level);
+  for (int axis = 0; axis < 3; ++axis) {
+    const SparseGrid<std::uint8_t> from = around;
+    from.forEach([&](glm::ivec3 brick, std::uint8_t) {
+      for (const int by : {-1, 1}) {
+        glm::ivec3 beside = brick;
+        beside[axis] += by;
+        if (beside[axis] >= 0 && beside[axis] < from.dimensions()[axis]) around[beside] = 1;
+      }
+    });
+  }
+  return around;
 }
 
-/// The sweep of one face.
+namespace {
+
+/// The boxes of a level through which lights are swept: the level's, or where that has more voxels than can be numbered, those of islands.
+std::vector<VoxelRange> sweptBoxes(const SourceLevel& level, const SparseGrid<std::uint8_t>& around) {
+  const Volume& outline = level.outline();
+  if (outline.voxelCount() <= std::size_t(std::numeric_limits<std::int32_t>::max()))
+    return {{.first = glm::ivec3(0), .end = outline.dimensions}};
+  return islandsOf(around, outline.dimensions);
+}
+
+/// The source in the index space of a box.
+RaySource fromBox(const RaySource& source, const VoxelRange& box) {
+  return {.place = source.atInfinity ? source.place : source.place - glm::dvec3(box.first), .atInfinity = source.atInfinity};
+}
+
+}  // namespace
+
+/// The sweep of one face of a box.
 class SweptLight::Sweep {
  public:
-  Sweep(SweptLight& light, const Device& device, const SourceLevel& level, const VoxelValues& values, const FaceRays& fan, int fanNumber)
+  /// `around` marks the bricks whose codes are kept. With `isIsland`, there are further boxes.
+  Sweep(SweptLight& light, const Device& device, const SourceLevel& level, const VoxelValues& values, const SparseGrid<std::uint8_t>& around,
+        const VoxelRange& box, const FaceRays& fan, int fanNumber, bool isIsland)
       : light_(light),
         device_(device),
         level_(level),
         values_(values),
+        around_(around),
+        box_(box),
         fan_(fan),
         fanNumber_(fanNumber),
-        dimensions_(level.outline().dimensions),
+        isIsland_(isIsland),
+        dimensions_(box.extent()),
         sides_(sidesOf(fan, dimensions_)),
         strideB_(sides_.x + 2),
         planeStride_(strideB_ * (sides_.y + 2)) {
@@ -99,7 +134,7 @@ class SweptLight::Sweep {
     depths_ = Buffer(device, depthBytes(fan, planes_), MemoryUse::Device, "ray depths");
     frame_ = Buffer(device, sizeof(shader::LightPlanes), MemoryUse::Device, "planes of a light", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
     codes_ = Buffer(device, codeWords() * std::uint64_t(planes_) * sizeof(std::uint32_t), MemoryUse::Device, "codes of light");
-    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars()});
+    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars(), isIsland});
     lookUp_ = makeComputePipeline(device, shaders::light_planes, {values.areScalars()});
     if (!values.areScalars()) return;
     const std::vector<glm::vec4> texels = values.table().texels(kStoredDepth * level.outline().voxelSize());
@@ -109,15 +144,22 @@ class SweptLight::Sweep {
     tableTexels_ = TexelView(device, table_);
   }
 
-  void run(const glm::dmat4& indexToWorld, std::vector<StageTime>& times, const Progress& progress) {
-    indexToWorld_ = glm::dmat3(indexToWorld);
-    around_ = bricksAround(level_).values;
+  void run(std::vector<StageTime>& times, const Progress& progress) {
     for (int begin = 0; begin < fan_.planeCount; begin += planes_) {
       if (progress) progress("sweeping light", double(begin) / double(fan_.planeCount));
       sweepPlanes(begin, std::min(begin + planes_, fan_.planeCount), times);
     }
     storeLayer();
     light_.codes_.flush();
+  }
+
+  /// Of an island: sweeps it with these depths in front of it, by ray, and returns those behind it.
+  std::vector<float> runBehind(std::span<const float> before, std::vector<StageTime>& times, const Progress& progress) {
+    upload(device_, carried_, std::as_bytes(before));
+    run(times, progress);
+    std::vector<float> behind(fan_.rays());
+    download(device_, carried_, std::as_writable_bytes(std::span(behind)));
+    return behind;
   }
 
  private:
@@ -130,9 +172,9 @@ class SweptLight::Sweep {
     const auto found = layers_.find(number);
     if (found != layers_.end()) return found->second;
     if (layers_.size() > 1) layers_.erase(fan_.direction > 0 ? layers_.begin() : std::prev(layers_.end()));
-    VoxelRange box{.first = glm::ivec3(0), .end = dimensions_};
-    box.first[fan_.axis] = number * kEdge;
-    box.end[fan_.axis] = std::min((number + 1) * kEdge, dimensions_[fan_.axis]);
+    VoxelRange box = box_;
+    box.first[fan_.axis] += number * kEdge;
+    box.end[fan_.axis] = std::min(box.first[fan_.axis] + kEdge, box_.end[fan_.axis]);
     return layers_.emplace(number, level_.source->read(level_.level, box)).first->second;
   }
 
@@ -190,8 +232,8 @@ class SweptLight::Sweep {
                                                 .slab = place,
                                                 .sides = sides_,
                                                 .indexToWorld = indexToWorld_,
-                                                .place = light_.source_.place,
-                                                .atInfinity = light_.source_.atInfinity ? 1 : 0,
+                                                .place = source_.place,
+                                                .atInfinity = source_.atInfinity ? 1 : 0,
                                                 .fanIndex = fanNumber_});
     const std::array<Binding, 3> lookUps{&frame_, &slabTexels_, &codes_};
     commands.dispatch(lookUp_, lookUps, glm::ivec3((sides_.x + 1) / 2, sides_.y, end - begin));
@@ -212,30 +254,31 @@ class SweptLight::Sweep {
       keptLayer_ = number;
     }
     const int axisA = (fan_.axis + 1) % 3, axisB = (fan_.axis + 2) % 3;
-    const glm::ivec3 bricks = light_.bricks_;
+    const glm::ivec3 bricks = (dimensions_ + kEdge - 1) / kEdge, firstBrick = box_.first / kEdge;
     glm::ivec3 brick;
     brick[fan_.axis] = number;
     for (brick[axisB] = 0; brick[axisB] < bricks[axisB]; ++brick[axisB])
       for (brick[axisA] = 0; brick[axisA] < bricks[axisA]; ++brick[axisA]) {
-        const std::size_t index = light_.indexOf(brick);
-        if (around_[index] == 0) continue;
-        const auto [place, isNew] = kept_.try_emplace(index);
-        if (isNew) place->second.fill(std::uint16_t(shader::kOtherFan));
+        if (around_.at(firstBrick + brick) == 0) continue;
+        const auto [place, isNew] = kept_.try_emplace(std::pair(brick[axisB], brick[axisA]), firstBrick + brick, BrickCodes());
+        BrickCodes& ofBrick = place->second.second;
+        if (isNew) ofBrick.fill(std::uint16_t(shader::kOtherFan));
         const glm::ivec3 end = glm::min(dimensions_ - brick * kEdge, kEdge);
         glm::ivec3 v;
         v[fan_.axis] = coordinate % kEdge;
         for (v[axisB] = 0; v[axisB] < end[axisB]; ++v[axisB])
           for (v[axisA] = 0; v[axisA] < end[axisA]; ++v[axisA]) {
             const int a = brick[axisA] * kEdge + v[axisA], b = brick[axisB] * kEdge + v[axisB];
-            place->second[ScalarBricks::indexInBrick(v)] = codes[std::size_t(a) + std::size_t(b) * std::size_t((sides_.x + 1) / 2 * 2)];
+            ofBrick[ScalarBricks::indexInBrick(v)] = codes[std::size_t(a) + std::size_t(b) * std::size_t((sides_.x + 1) / 2 * 2)];
           }
       }
   }
 
   /// Adds the bricks of a layer to the file. What a voxel has through another face stays.
   void storeLayer() {
-    for (auto& [index, codes] : kept_) {
-      std::uint32_t& record = light_.records_[index];
+    for (auto& [place, kept] : kept_) {
+      auto& [brick, codes] = kept;
+      std::uint32_t& record = light_.records_[brick];
       if (record != 0) {
         BrickCodes before;
         light_.codes_.readAt(std::uint64_t(record - 1) * sizeof(BrickCodes), std::as_writable_bytes(std::span(before)));
@@ -252,20 +295,23 @@ class SweptLight::Sweep {
   const Device& device_;
   const SourceLevel& level_;
   const VoxelValues& values_;
+  const SparseGrid<std::uint8_t>& around_;
+  const VoxelRange box_;
   const FaceRays fan_;
   const int fanNumber_;
-  const glm::ivec3 dimensions_;
+  const bool isIsland_;
+  const glm::ivec3 dimensions_;  ///< of the box
   const glm::ivec2 sides_;
   const int strideB_, planeStride_;
   int planes_ = kMaxPlanes;
-  glm::dmat3 indexToWorld_{1.0};
+  const RaySource source_ = fromBox(light_.source_, box_);
+  const glm::dmat3 indexToWorld_{level_.outline().indexToWorld};
   Buffer slab_, carried_, depths_, frame_, codes_, table_;
   TexelView slabTexels_, tableTexels_;
   Pipeline sweep_, lookUp_;
   std::map<int, Volume> layers_;
-  std::vector<std::uint8_t> around_;
   int keptLayer_ = -1;
-  std::map<std::size_t, BrickCodes> kept_;
+  std::map<std::pair<int, int>, std::pair<glm::ivec3, BrickCodes>> kept_;  ///< of the layer's bricks, by their places on its sides
 };
 
 namespace {
@@ -280,31 +326,48 @@ namespace {
 SweptLight::SweptLight(const Device& device, const SourceLevel& level, const RaySource& source, std::vector<StageTime>& times,
                        const Progress& progress) try
     : source_(source),
-      bricks_((level.outline().dimensions + kEdge - 1) / kEdge),
-      records_(std::size_t(bricks_.x) * std::size_t(bricks_.y) * std::size_t(bricks_.z), 0),
+      records_((level.outline().dimensions + kEdge - 1) / kEdge),
       codes_(std::filesystem::temp_directory_path()) {
   const VoxelValues values(level);
-  const std::array<FaceRays, 6> fans = faceRays(level.outline().dimensions, source);
-  for (int i = 0; i < 6; ++i)
-    if (fans[std::size_t(i)].planeCount > 0)
-      Sweep(*this, device, level, values, fans[std::size_t(i)], i).run(level.outline().indexToWorld, times, progress);
+  const SparseGrid<std::uint8_t> around = bricksAround(level);
+  std::vector<IslandRays> islands;
+  for (const VoxelRange& box : sweptBoxes(level, around))
+    islands.push_back({.box = box, .fans = faceRays(box.extent(), fromBox(source, box))});
+  const bool areIslands = islands.size() > 1;
+  const auto sweepOf = [&](const IslandRays& island, int face) {
+    return Sweep(*this, device, level, values, around, island.box, island.fans[std::size_t(face)], face, areIslands);
+  };
+  const auto forEachFace = [&](const auto& visit) {
+    for (IslandRays& island : islands)
+      for (int face = 0; face < 6; ++face)
+        if (const FaceRays& fan = island.fans[std::size_t(face)]; fan.planeCount > 0) visit(island, face, fan);
+  };
+  if (!areIslands) {
+    forEachFace([&](const IslandRays& island, int face, const FaceRays&) { sweepOf(island, face).run(times, progress); });
+    return;
+  }
+  forEachFace([&](IslandRays& island, int face, const FaceRays& fan) {
+    island.depths[std::size_t(face)] = sweepOf(island, face).runBehind(std::vector<float>(fan.rays(), 0.0f), times, progress);
+  });
+  const IslandShadows shadows(source_, islands);
+  forEachFace([&](const IslandRays& island, int face, const FaceRays&) {
+    if (const std::vector<float> before = shadows.before(std::size_t(&island - islands.data()), face); !before.empty())
+      sweepOf(island, face).runBehind(before, times, progress);
+  });
 } catch (const std::system_error& error) {
   failTemporary(error);
 }
 
-std::uint64_t SweptLight::leastBytes(glm::ivec3 dimensions, const RaySource& source) {
+std::uint64_t SweptLight::leastBytes(const SourceLevel& level, const RaySource& source) {
   std::uint64_t bytes = 0;
-  for (const FaceRays& fan : faceRays(dimensions, source))
-    if (fan.planeCount > 0) bytes = std::max(bytes, sweepBytes(fan, sidesOf(fan, dimensions), kMinPlanes));
+  for (const VoxelRange& box : sweptBoxes(level, bricksAround(level)))
+    for (const FaceRays& fan : faceRays(box.extent(), fromBox(source, box)))
+      if (fan.planeCount > 0) bytes = std::max(bytes, sweepBytes(fan, sidesOf(fan, box.extent()), kMinPlanes));
   return bytes;
 }
 
-std::size_t SweptLight::indexOf(glm::ivec3 brick) const {
-  return std::size_t(brick.x) + std::size_t(bricks_.x) * (std::size_t(brick.y) + std::size_t(bricks_.y) * std::size_t(brick.z));
-}
-
 void SweptLight::read(glm::ivec3 brick, std::span<std::uint16_t> codes) const {
-  const std::uint32_t record = records_[indexOf(brick)];
+  const std::uint32_t record = records_.at(brick);
   if (record == 0) {
     std::ranges::fill(codes, std::uint16_t(0));
     return;

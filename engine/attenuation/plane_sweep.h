@@ -35,28 +35,27 @@ class SweptLight {
   using BrickCodes = std::array<std::uint16_t, ScalarBricks::kEdge * ScalarBricks::kEdge * ScalarBricks::kEdge>;
 
   /// COMPUTE ray_sweep.comp and light_planes.comp, a few planes of a face at a time. `source` is in the level's index space. The codes
-  /// take 1 KiB on the disk for each brick with data and each of its neighbours, in the system's folder for temporary files. Blocks;
+  /// take 1 KiB on the disk for each brick with data and each of its neighbours, in the system's folder for temporary files. Of a level
+  /// with a larger box than can be numbered, islands are swept (islands.h), a second time with what is between them and the light. Blocks;
   /// adds the times to `times`. Fails with ErrorKind::OutOfMemory.
   SweptLight(const Device& device, const SourceLevel& level, const RaySource& source, std::vector<StageTime>& times,
              const Progress& progress = {});
 
   const RaySource& source() const { return source_; }
-  /// Bytes of device memory that the sweep of a light through a box takes at least.
-  static std::uint64_t leastBytes(glm::ivec3 dimensions, const RaySource& source);
+  /// Bytes of device memory that the sweep of a light through a level takes at least.
+  static std::uint64_t leastBytes(const SourceLevel& level, const RaySource& source);
   /// Reads the codes of a brick of the level; 0 where no brick nearby has data.
   void read(glm::ivec3 brick, std::span<std::uint16_t> codes) const;
 
  private:
   class Sweep;
-  std::size_t indexOf(glm::ivec3 brick) const;
 
   RaySource source_;
-  glm::ivec3 bricks_{0};                ///< along the axes
-  std::vector<std::uint32_t> records_;  ///< by brick: 0 where there is none, or the number of its codes in `codes_`, from 1
+  SparseGrid<std::uint32_t> records_;  ///< by brick: 0 where there is none, or the number of its codes in `codes_`, from 1
   Spool codes_;
 };
 
 /// Marks the bricks of a level that have data, and their neighbours.
-Cells bricksAround(const SourceLevel& level);
+SparseGrid<std::uint8_t> bricksAround(const SourceLevel& level);
 
 }  // namespace freevoxels

@@ -71,7 +71,7 @@ struct InputDescription {
   Volume clip(Volume whole) const;
   bool isClipped() const { return clipBox || clipPlane; }
   /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
-  /// temperatures and albedos. If the box of a baked volume is too large at `level` of its octree, the finest level that fits is
+  /// temperatures and albedos. If a baked volume is too large at `level` of its octree, the finest level that fits is
   /// opened, with a warning. `what`: more grids, labels and channels; the rest of it is that of the input. `progress` may abandon it.
   Volume open(std::uint64_t maximumVoxels, const ReadRequest& what = {}, int level = 0, const Progress& progress = {}) const;
   /// The one place that decides it: by the name, by the content of a file whose name says nothing, and by `raw`.
@@ -303,7 +303,7 @@ struct SceneDescription {
   /// are classified by a transfer function; and values beforehand where it is classified otherwise than when it was baked.
   BakedNeed needOf(const fvx::FvxFile& file, int frameCount) const;
   /// What frames are drawn of. A baked file is read by whoever draws it, where `mayStayFile` allows that and needOf(); other volumes
-  /// are read, with boxes of at most kMaxNumberedVoxels. A frame of a film may lack grids. Fails as readVolume().
+  /// are read, with at most kMaxNumberedVoxels that are occupied. A frame of a film may lack grids. Fails as readVolume().
   std::shared_ptr<const VolumeSource> openSource(int frameCount, bool mayStayFile = true, bool isFrame = false,
                                                  const Progress& progress = {}) const;
   /// As CameraDescription::resolve, of all volumes.
@@ -338,8 +338,8 @@ std::string resolutionText(glm::ivec3 dimensions);
 /// NAME of "procedural:NAME"; nothing for a file.
 std::optional<std::string> proceduralName(const std::string& input);
 
-/// `level` of a baked volume, or, with a warning, the finest one whose box has at most `maximumVoxels` voxels if that is coarser. Fails
-/// as finestLevel does.
+/// `level` of a baked volume, or, with a warning, the finest one that has at most `maximumVoxels` voxels (finestLevel) if that is coarser.
+/// Fails as finestLevel does.
 int levelThatFits(const fvx::FvxFile& file, int level, std::uint64_t maximumVoxels, std::vector<std::string>& warnings);
 
 /// Calls makeProcedural, but fails with ErrorKind::OutOfMemory before allocating if the volume exceeds `maximumVoxels` or this

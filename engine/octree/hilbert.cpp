@@ -76,18 +76,23 @@ int hilbertBits(glm::ivec3 dimensions) {
   return std::max(int(std::bit_width(std::uint32_t(longest - 1))), 1);
 }
 
-std::vector<glm::ivec3> hilbertOrder(glm::ivec3 dimensions) {
+void sortAlongHilbert(std::vector<glm::ivec3>& cells, glm::ivec3 dimensions) {
   const int bits = hilbertBits(dimensions);
-  std::vector<std::pair<std::uint64_t, glm::ivec3>> cells;
+  std::vector<std::pair<std::uint64_t, glm::ivec3>> places;
+  places.reserve(cells.size());
+  for (const glm::ivec3 cell : cells) places.emplace_back(hilbertIndex(glm::uvec3(cell), bits), cell);
+  std::ranges::sort(places, {}, &std::pair<std::uint64_t, glm::ivec3>::first);
+  std::ranges::transform(places, cells.begin(), &std::pair<std::uint64_t, glm::ivec3>::second);
+}
+
+std::vector<glm::ivec3> hilbertOrder(glm::ivec3 dimensions) {
+  std::vector<glm::ivec3> cells;
   cells.reserve(std::size_t(dimensions.x) * std::size_t(dimensions.y) * std::size_t(dimensions.z));
   for (glm::ivec3 cell(0); cell.z < dimensions.z; ++cell.z)
     for (cell.y = 0; cell.y < dimensions.y; ++cell.y)
-      for (cell.x = 0; cell.x < dimensions.x; ++cell.x) cells.emplace_back(hilbertIndex(glm::uvec3(cell), bits), cell);
-  std::ranges::sort(cells, {}, &std::pair<std::uint64_t, glm::ivec3>::first);
-  std::vector<glm::ivec3> order;
-  order.reserve(cells.size());
-  for (const auto& [index, cell] : cells) order.push_back(cell);
-  return order;
+      for (cell.x = 0; cell.x < dimensions.x; ++cell.x) cells.push_back(cell);
+  sortAlongHilbert(cells, dimensions);
+  return cells;
 }
 
 }  // namespace freevoxels

@@ -26,6 +26,9 @@ int hilbertBits(glm::ivec3 dimensions);
 /// box that is no such cube, consecutive cells need not be neighbours.
 std::vector<glm::ivec3> hilbertOrder(glm::ivec3 dimensions);
 
+/// The same of some cells of the box, each of which is there once.
+void sortAlongHilbert(std::vector<glm::ivec3>& cells, glm::ivec3 dimensions);
+
 /// Parts that a frame is divided into for distributed rendering. Fixed, so that sums over shares do not depend on the number of
 /// processes among which the shares are dealt.
 inline constexpr int kShares = 256;

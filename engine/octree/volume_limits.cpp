@@ -35,10 +35,11 @@ void checkHolds(const Device& device, glm::ivec3 box, std::uint64_t bytes, std::
 
 void checkBoxFits(const Device& device, const HierarchyLayout& hierarchy) {
   const glm::ivec3 box = hierarchy.levels.front().dimensions;
-  checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
-  if (hierarchy.levels.front().paddedVoxels() > kMaxNumberedVoxels)
+  const glm::dvec3 size(double(hierarchy.levels.front().rowPitch), box.y, box.z);
+  if (size.x * size.y * size.z > double(kMaxNumberedVoxels))
     fail(ErrorKind::OutOfMemory, "a volume of {}x{}x{} voxels has more than the {} that can be numbered: crop or resample it", box.x,
          box.y, box.z, kMaxNumberedVoxels);
+  checkBinds(device, box, occupancyBytes(hierarchy), sizeof(shader::OccupancyWord));
   checkHolds(device, box, occupancyBytes(hierarchy) + brickBytes(box));
 }
 

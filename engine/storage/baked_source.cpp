@@ -83,11 +83,11 @@ BakedSource::BakedSource(std::shared_ptr<const FvxFile> file, int finest) : file
   for (int level = finest; level < file_->levels(); ++level) outlines_.push_back(bakedOutline(*file_, level));
 }
 
-Cells BakedSource::bricks(int level) const {
-  Cells cells((outline(level).dimensions + ScalarBricks::kEdge - 1) / ScalarBricks::kEdge);
+SparseGrid<std::uint8_t> BakedSource::bricks(int level) const {
+  SparseGrid<std::uint8_t> cells((outline(level).dimensions + ScalarBricks::kEdge - 1) / ScalarBricks::kEdge);
   for (const ChunkEntry& chunk : file_->chunks(Channel::Scalars, finest_ + level))
     for (int brick = 0; brick < fvx::kChunkBricks; ++brick)
-      if (chunk.hasBrick(brick)) cells.values[cells.index(chunk.brickCell(brick))] = 1;
+      if (chunk.hasBrick(brick)) cells[chunk.brickCell(brick)] = 1;
   return cells;
 }
 

@@ -19,7 +19,7 @@ class BakedSource : public VolumeSource {
   bool isInMemory() const override { return false; }
   int levels() const override { return int(outlines_.size()); }
   const Volume& outline(int level) const override { return outlines_[std::size_t(level)]; }
-  Cells bricks(int level) const override;
+  SparseGrid<std::uint8_t> bricks(int level) const override;
   Volume read(int level, const VoxelRange& box) const override;
   std::shared_ptr<const Volume> whole(const Progress& progress) const override;
 

@@ -192,12 +192,34 @@ void encodeInTurn(std::span<const glm::ivec3> cells, const ChunkSource& chunk, c
   }
 }
 
+/// The cells of the chunks in which a volume has bricks.
+std::vector<glm::ivec3> occupiedChunks(const Volume& volume) {
+  SparseGrid<std::uint8_t> chunks((volume.dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
+  const auto add = [&](const ScalarBricks& values) {
+    for (std::size_t brick = 0; brick < values.bricks().size(); ++brick) {
+      const glm::ivec3 place = values.firstVoxel(brick);
+      const glm::ivec3 low = glm::max(place, 0) / fvx::kChunkEdge;
+      const glm::ivec3 high = glm::min(place + ScalarBricks::kEdge - 1, volume.dimensions - 1) / fvx::kChunkEdge;
+      for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
+        for (cell.y = low.y; cell.y <= high.y; ++cell.y)
+          for (cell.x = low.x; cell.x <= high.x; ++cell.x) chunks[cell] = 1;
+    }
+  };
+  add(volume.scalars);
+  if (volume.temperature) add(volume.temperature->values);
+  if (volume.albedo) std::ranges::for_each(volume.albedo->values, add);
+  std::vector<glm::ivec3> cells;
+  chunks.forEach([&](glm::ivec3 cell, std::uint8_t) { cells.push_back(cell); });
+  return cells;
+}
+
 }  // namespace
 
 StreamedVolume partsStream(const VdbParts& parts, const Classification& classification) {
   return {.outline = parts.outline(),
           .content = contentCellsOf(parts.outline().dimensions, parts.sample(), classification),
           .range = {parts.outline().minimum, parts.outline().maximum},
+          .cells = parts.occupied(fvx::kChunkEdge),
           .chunk = [&parts](glm::ivec3 cell) {
             ChunkValues chunk = chunkOf(parts.read(cell * fvx::kChunkEdge, fvx::kChunkEdge), glm::ivec3(0));
             chunk.cell = cell;
@@ -219,7 +241,8 @@ void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volum
       .withoutData = densities ? WithoutData::Zero : WithoutData::Ignored,
       .leaveOutZeros = densities && !settings.keepScalars,
       .compress = settings.compress};
-  const std::vector<glm::ivec3> cells = hilbertOrder((dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
+  std::vector<glm::ivec3> cells = volume.cells;
+  sortAlongHilbert(cells, (dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
   const auto spread = [&](fvx::FvxWriter* writer) {
     encodeInTurn(cells, volume.chunk, write, team, writer, progress);
   };
@@ -240,6 +263,7 @@ void bakeVolume(const std::filesystem::path& file, const Volume& volume, const C
                {.outline = outlineOf(volume),
                 .content = contentCells(volume, classification),
                 .range = {volume.minimum, volume.maximum},
+                .cells = occupiedChunks(volume),
                 .chunk = [&](glm::ivec3 cell) { return chunkOf(volume, cell); }},
                classification, settings, progress, team);
 }
@@ -262,8 +286,10 @@ Volume readBaked(const std::shared_ptr<const FvxFile>& file, int level, const Pr
 
 int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels) {
   for (int level = 0; level < file.levels(); ++level) {
-    const glm::u64vec3 n(file.dimensions(level));
-    if (n.x * n.y * n.z <= maximumVoxels) return level;
+    const glm::dvec3 n(file.dimensions(level));
+    std::uint64_t bricks = 0;
+    for (const ChunkEntry& chunk : file.chunks(Channel::Scalars, level)) bricks += std::uint64_t(chunk.bricks());
+    if (n.x * n.y * n.z <= double(maximumVoxels) || bricks * fvx::kBrickVoxels <= maximumVoxels) return level;
   }
   fail(ErrorKind::OutOfMemory, "'{}' is too large: not even its coarsest level fits into {} voxels; raise {}",
        file.path().string(), maximumVoxels, Parameter("memory-limit"));

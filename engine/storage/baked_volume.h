@@ -37,7 +37,7 @@ struct BakeTeam {
 /// The values of a chunk of the finest level; called by several threads.
 using ChunkSource = std::function<fvx::ChunkValues(glm::ivec3 cell)>;
 
-/// Writes a volume that need not fit into memory: each chunk is requested once, in Hilbert order, a few at a
+/// Writes a volume that need not fit into memory: each of `cells` is requested once, in Hilbert order, a few at a
 /// time. `outline` is the volume without values; its counts and ranges are computed on the way. `content` is
 /// the visible part, and `range` the least and the greatest scalar that a transfer function distinguishes.
 /// Atomic (core/atomic_file.h).
@@ -45,6 +45,7 @@ struct StreamedVolume {
   Volume outline;
   ContentCells content;
   glm::vec2 range{0.0f};
+  std::vector<glm::ivec3> cells;  ///< of all chunks that may hold something, in any order
   ChunkSource chunk;
 };
 /// Of a file; `parts` must outlive the result.
@@ -67,7 +68,7 @@ Volume readBaked(const std::shared_ptr<const fvx::FvxFile>& file, int level = 0,
 /// Returns what readBaked does without the values, before any chunk is read.
 Volume bakedOutline(const fvx::FvxFile& file, int level = 0);
 
-/// The finest level whose box has at most `maximumVoxels` voxels. Fails with ErrorKind::OutOfMemory if there
+/// The finest level whose box, or whose bricks, have at most `maximumVoxels` voxels. Fails with ErrorKind::OutOfMemory if there
 /// is none.
 int finestLevel(const fvx::FvxFile& file, std::uint64_t maximumVoxels);
 

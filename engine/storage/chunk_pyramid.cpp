@@ -38,7 +38,8 @@ bool ChunkValues::empty() const {
 
 std::vector<glm::ivec3> levelDimensions(glm::ivec3 dimensions) {
   std::vector<glm::ivec3> levels{dimensions};
-  while (std::max({levels.back().x, levels.back().y, levels.back().z}) > kChunkEdge) levels.push_back((levels.back() + 1) / 2);
+  while (std::max({levels.back().x, levels.back().y, levels.back().z}) > kChunkEdge && levels.size() < std::size_t(kMaxLevels))
+    levels.push_back((levels.back() + 1) / 2);
   return levels;
 }
 

@@ -29,7 +29,7 @@ struct ChunkValues {
   bool empty() const;
 };
 
-/// Dimensions of each level, level 0 first: halved and rounded up until one chunk holds all.
+/// Dimensions of each level, level 0 first: halved and rounded up until one chunk holds all, or there are kMaxLevels.
 std::vector<glm::ivec3> levelDimensions(glm::ivec3 dimensions);
 
 /// From voxel indices of a level to the world: a voxel of level l is a cube of 2^l voxels of level 0.

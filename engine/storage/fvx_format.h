@@ -6,6 +6,7 @@
 #include <bit>
 #include <cstdint>
 
+#include "engine/octree/hilbert.h"
 #include "engine/volume/scalar_bricks.h"
 
 namespace freevoxels::fvx {
@@ -17,14 +18,14 @@ inline constexpr std::array<std::uint8_t, 12> kIdentifier{0xab, 'F', 'V', 'X', '
 inline constexpr std::uint32_t kByteOrderMark = 0x04030201, kOtherByteOrderMark = 0x01020304;
 
 /// A reader accepts files of its own major version and any minor version.
-inline constexpr std::uint16_t kMajorVersion = 1, kMinorVersion = 2;
+inline constexpr std::uint16_t kMajorVersion = 1, kMinorVersion = 3;
 
 inline constexpr std::uint64_t kPageBytes = 4096;      ///< sections begin at multiples of this
 inline constexpr std::uint64_t kChunkAlignment = 64;   ///< chunks begin at multiples of this
 inline constexpr int kChunkEdge = 32;                  ///< voxels
 inline constexpr int kChunkBricks = 64;                ///< bricks of ScalarBricks in a chunk
 inline constexpr int kMaxLevels = 9;                  ///< of the octree, level 0 included
-inline constexpr int kLongestEdge = kChunkEdge << (kMaxLevels - 1);  ///< of a volume, voxels
+inline constexpr int kLongestEdge = kChunkEdge << kMaxHilbertBits;  ///< of a volume, voxels
 inline constexpr int kChunkVoxels = kChunkEdge * kChunkEdge * kChunkEdge;
 inline constexpr int kBrickVoxels = ScalarBricks::kEdge * ScalarBricks::kEdge * ScalarBricks::kEdge;
 static_assert(kChunkBricks * kBrickVoxels == kChunkVoxels);

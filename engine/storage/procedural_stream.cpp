@@ -2,6 +2,8 @@
 
 #include <algorithm>
 
+#include "engine/octree/hilbert.h"
+
 namespace freevoxels {
 
 namespace {
@@ -29,7 +31,8 @@ std::vector<float> chunkOf(const ProceduralField& field, glm::ivec3 cell, const 
 StreamedVolume proceduralStream(const ProceduralField& field, const Volume& sample, const Classification& classification) {
   StreamedVolume stream{.outline = {.source = sample.source, .dimensions = field.dimensions(), .indexToWorld = field.indexToWorld()},
                         .content = contentCellsOf(field.dimensions(), sample, classification),
-                        .range = {sample.minimum, sample.maximum}};
+                        .range = {sample.minimum, sample.maximum},
+                        .cells = hilbertOrder((field.dimensions() + fvx::kChunkEdge - 1) / fvx::kChunkEdge)};
   const bool temperatures = sample.temperature.has_value();
   if (temperatures) stream.outline.temperature.emplace();
   stream.chunk = [&field, temperatures](glm::ivec3 cell) {

@@ -24,37 +24,47 @@ struct Range {
   }
 };
 
-/// The range of the voxels x to `end` - 1 of a row, or to the end of the row.
-Range rangeOf(const std::vector<float>& row, int x, int end) {
-  Range range;
-  for (const int last = std::min(end, int(row.size())); x < last; ++x) {
-    const float value = row[std::size_t(x)];
-    range.low = std::min(range.low, value == kInactiveVoxel ? range.low : value);
-    range.high = std::max(range.high, value);
-  }
-  return range;
+/// Adds the values of the voxels of a brick that have data and lie between the planes `low` and `end` - 1 across z to the ranges of a plane of
+/// cells. The range of a cell includes `below` and `above` more voxels at its lower and upper sides.
+void addBrick(std::vector<Range>& ranges, glm::ivec2 cells, const ScalarBricks& scalars, std::size_t number, glm::ivec2 planes, int edge,
+              int below, int above) {
+  const ScalarBricks::Brick& brick = scalars.bricks()[number];
+  const glm::ivec3 place = scalars.firstVoxel(number);
+  const glm::ivec3 begin = glm::max(-place, 0), end = glm::min(scalars.dimensions() - place, ScalarBricks::kEdge);
+  // The cells of which voxel v is a part.
+  const auto firstOf = [&](int v) { return std::max(v - above, 0) / edge; };
+  const auto lastOf = [&](int v, int count) { return std::min((v + below) / edge, count - 1); };
+  const int firstX = firstOf(place.x + begin.x), lastX = lastOf(place.x + end.x - 1, cells.x);
+  for (int z = std::max(begin.z, planes[0] - place.z); z < std::min(end.z, planes[1] - place.z); ++z)
+    for (int y = begin.y; y < end.y; ++y) {
+      const float* const row = &brick[ScalarBricks::indexInBrick({0, y, z})];
+      const int firstY = firstOf(place.y + y), lastY = lastOf(place.y + y, cells.y);
+      for (int x = firstX; x <= lastX; ++x) {
+        Range range;
+        const int last = std::min((x + 1) * edge + above - place.x, end.x);
+        for (int v = std::max(x * edge - below - place.x, begin.x); v < last; ++v) {
+          range.low = std::min(range.low, row[v] == kInactiveVoxel ? range.low : row[v]);
+          range.high = std::max(range.high, row[v]);
+        }
+        for (int cellY = firstY; cellY <= lastY; ++cellY) ranges[std::size_t(x + cells.x * cellY)].add(range);
+      }
+    }
 }
 
 /// Marks the cells for whose range of values `holds(low, high)` is true. The range includes `below` and `above` (0 or 1) more voxels at the
 /// cells' lower and upper sides.
 template <typename Holds>
 void markCells(Cells& cells, const ScalarBricks& scalars, int edge, int below, int above, const Holds& holds) {
-  const glm::ivec3 n = scalars.dimensions();
+  const std::vector<std::size_t> order = scalars.inOrder();
+  const auto planeOf = [&](std::size_t brick) { return scalars.firstVoxel(brick).z; };
   tbb::parallel_for(0, cells.dimensions.z, [&](int plane) {
+    const glm::ivec2 planes(plane * edge - below, (plane + 1) * edge + above);
+    const auto first = std::ranges::lower_bound(order, planes[0] - ScalarBricks::kEdge + 1, {}, planeOf);
+    const auto end = std::ranges::lower_bound(first, order.end(), planes[1], {}, planeOf);
+    if (first == end) return;
     std::vector<Range> ranges(std::size_t(cells.dimensions.x) * std::size_t(cells.dimensions.y));
-    std::vector<float> row(std::size_t(n.x));
-    for (int z = std::max(plane * edge - below, 0); z < std::min((plane + 1) * edge + above, n.z); ++z)
-      for (int y = 0; y < n.y; ++y) {
-        scalars.copyRow(y, z, row);
-        const int cellY = y / edge;
-        for (int x = 0; x < cells.dimensions.x; ++x) {
-          const Range range = rangeOf(row, std::max(x * edge - below, 0), (x + 1) * edge + above);
-          Range* const there = &ranges[std::size_t(x + cells.dimensions.x * cellY)];
-          there->add(range);
-          if (above > 0 && y % edge == 0 && cellY > 0) (there - cells.dimensions.x)->add(range);
-          if (below > 0 && (y + 1) % edge == 0 && cellY + 1 < cells.dimensions.y) (there + cells.dimensions.x)->add(range);
-        }
-      }
+    for (auto brick = first; brick != end; ++brick)
+      addBrick(ranges, glm::ivec2(cells.dimensions), scalars, *brick, planes, edge, below, above);
     for (std::size_t i = 0; i < ranges.size(); ++i)
       if (ranges[i].low <= ranges[i].high && holds(ranges[i].low, ranges[i].high))
         cells.values[i + std::size_t(plane) * ranges.size()] = 1;

@@ -1,6 +1,12 @@
 #include "engine/volume/coarse_volume.h"
 
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
 #include <glm/gtc/matrix_transform.hpp>
+#include <tuple>
+#include <vector>
 
 #include "engine/core/error.h"
 
@@ -8,19 +14,71 @@ namespace freevoxels {
 
 namespace {
 
-ScalarBricks coarseBricks(const ScalarBricks& fine, glm::ivec3 dimensions, int factor,
-                          WithoutData withoutData) {
-  return ScalarBricks::make(dimensions, [&](glm::ivec3 cell) {
-    const glm::ivec3 first = cell * factor, end = glm::min(first + factor, fine.dimensions());
-    double sum = 0.0;
-    int held = 0, all = 0;
-    for (int z = first.z; z < end.z; ++z)
-      for (int y = first.y; y < end.y; ++y)
-        for (int x = first.x; x < end.x; ++x, ++all)
-          if (const float scalar = fine.at({x, y, z}); scalar != kInactiveVoxel) sum += scalar, ++held;
-    if (held == 0) return kInactiveVoxel;
-    return float(sum / (withoutData == WithoutData::Zero ? all : held));
+/// A brick of the coarse volume and the bricks of the fine one of which it is made.
+struct CoarseBrick {
+  glm::ivec3 cell;
+  std::vector<std::size_t> bricks;
+};
+
+/// In the order of their cells.
+std::vector<CoarseBrick> coarseBricksOf(const ScalarBricks& fine, const ScalarBricks& coarse, int factor) {
+  constexpr int n = ScalarBricks::kEdge;
+  const auto cellOf = [&](glm::ivec3 voxel) { return glm::clamp(voxel, glm::ivec3(0), fine.dimensions() - 1) / factor / n; };
+  SparseGrid<std::uint32_t> numbers(coarse.cells());  // in `parts`, from 1
+  std::vector<CoarseBrick> parts;
+  for (std::size_t brick = 0; brick < fine.bricks().size(); ++brick) {
+    const glm::ivec3 low = cellOf(fine.firstVoxel(brick)), high = cellOf(fine.firstVoxel(brick) + (n - 1));
+    for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
+      for (cell.y = low.y; cell.y <= high.y; ++cell.y)
+        for (cell.x = low.x; cell.x <= high.x; ++cell.x) {
+          std::uint32_t& number = numbers[cell];
+          if (number == 0) {
+            parts.push_back({.cell = cell, .bricks = {}});
+            number = std::uint32_t(parts.size());
+          }
+          parts[number - 1].bricks.push_back(brick);
+        }
+  }
+  std::ranges::sort(parts, {}, [](const CoarseBrick& part) { return std::tuple(part.cell.z, part.cell.y, part.cell.x); });
+  return parts;
+}
+
+/// Fills a brick of means, of a fine voxel in each of which something is.
+void fillCoarse(ScalarBricks::Brick& means, const CoarseBrick& part, const ScalarBricks& fine, int factor, WithoutData withoutData) {
+  constexpr int n = ScalarBricks::kEdge;
+  std::array<double, std::tuple_size_v<ScalarBricks::Brick>> sums{}, held{};
+  const glm::ivec3 begin = part.cell * n * factor, end = glm::ivec3(glm::min(glm::dvec3(begin) + double(n) * factor, glm::dvec3(fine.dimensions())));
+  for (const std::size_t brick : part.bricks) {
+    const glm::ivec3 place = fine.firstVoxel(brick), low = glm::max(begin - place, 0), high = glm::min(end - place, n);
+    for (glm::ivec3 v(0, 0, low.z); v.z < high.z; ++v.z)
+      for (v.y = low.y; v.y < high.y; ++v.y)
+        for (v.x = low.x; v.x < high.x; ++v.x)
+          if (const float scalar = fine.bricks()[brick][ScalarBricks::indexInBrick(v)]; scalar != kInactiveVoxel) {
+            const std::size_t to = ScalarBricks::indexInBrick((place + v - begin) / factor);
+            sums[to] += scalar;
+            held[to] += 1.0;
+          }
+  }
+  for (glm::ivec3 v(0); v.z < n; ++v.z)
+    for (v.y = 0; v.y < n; ++v.y)
+      for (v.x = 0; v.x < n; ++v.x) {
+        const std::size_t to = ScalarBricks::indexInBrick(v);
+        const glm::dvec3 all(glm::min(glm::ivec3(factor), end - begin - v * factor));
+        if (held[to] > 0.0) means[to] = float(sums[to] / (withoutData == WithoutData::Zero ? all.x * all.y * all.z : held[to]));
+      }
+}
+
+ScalarBricks coarseBricks(const ScalarBricks& fine, glm::ivec3 dimensions, int factor, WithoutData withoutData) {
+  ScalarBricks result(dimensions);
+  const std::vector<CoarseBrick> parts = coarseBricksOf(fine, result, factor);
+  std::vector<ScalarBricks::Brick> bricks(parts.size());
+  tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
+    bricks[i].fill(kInactiveVoxel);
+    fillCoarse(bricks[i], parts[i], fine, factor, withoutData);
   });
+  for (std::size_t i = 0; i < parts.size(); ++i)
+    if (std::ranges::any_of(bricks[i], [](float mean) { return mean != kInactiveVoxel; })) result.makeBrick(parts[i].cell) = bricks[i];
+  return result;
 }
 
 /// The signed distance of voxels from a plane, above 0 on the side that is clipped, in world units.

@@ -41,14 +41,10 @@ class Hash {
 void addBricks(Hash& hash, const ScalarBricks& bricks) {
   hash.add(bricks.dimensions());
   hash.add(bricks.corner());
-  const glm::ivec3 cells = bricks.cells();
-  for (glm::ivec3 cell(0); cell.z < cells.z; ++cell.z)
-    for (cell.y = 0; cell.y < cells.y; ++cell.y)
-      for (cell.x = 0; cell.x < cells.x; ++cell.x)
-        if (const ScalarBricks::Brick* brick = bricks.brickAt(cell)) {
-          hash.add(cell);
-          hash.add(std::span<const float>(*brick));
-        }
+  for (const std::size_t brick : bricks.inOrder()) {
+    hash.add(bricks.cell(brick));
+    hash.add(std::span<const float>(bricks.bricks()[brick]));
+  }
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 #include "engine/volume/scalar_bricks.h"
 
 #include <algorithm>
+#include <numeric>
+#include <tuple>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -16,8 +18,7 @@ constexpr std::size_t kMaxBricks = std::numeric_limits<std::int32_t>::max();
 ScalarBricks::ScalarBricks(glm::ivec3 dimensions, glm::ivec3 corner)
     : dimensions_(dimensions),
       corner_(corner),
-      cellCount_((glm::i64vec3(dimensions) + glm::i64vec3(corner) + std::int64_t(kEdge - 1)) / std::int64_t(kEdge)),
-      numbers_(std::size_t(cellCount_.x) * std::size_t(cellCount_.y) * std::size_t(cellCount_.z), -1) {}
+      numbers_((glm::i64vec3(dimensions) + glm::i64vec3(corner) + std::int64_t(kEdge - 1)) / std::int64_t(kEdge), -1) {}
 
 ScalarBricks ScalarBricks::of(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, Bricks bricks) {
   FV_CHECK_EQ(cells.size(), bricks.size());
@@ -30,7 +31,7 @@ ScalarBricks ScalarBricks::of(glm::ivec3 dimensions, std::vector<glm::ivec3> cel
 void ScalarBricks::checkCell(glm::ivec3 cell) const {
   for (int axis = 0; axis < 3; ++axis) {
     FV_CHECK_LE(0, cell[axis]);
-    FV_CHECK_LT(cell[axis], cellCount_[axis]);
+    FV_CHECK_LT(cell[axis], cells()[axis]);
   }
 }
 
@@ -39,10 +40,17 @@ void ScalarBricks::number(std::vector<glm::ivec3> cells) {
   cells_ = std::move(cells);
   for (std::size_t i = 0; i < cells_.size(); ++i) {
     checkCell(cells_[i]);
-    std::int32_t& number = numbers_[cellIndex(cells_[i])];
+    std::int32_t& number = numbers_[cells_[i]];
     FV_CHECK_EQ(number, -1);
     number = std::int32_t(i);
   }
+}
+
+std::vector<std::size_t> ScalarBricks::inOrder() const {
+  std::vector<std::size_t> order(cells_.size());
+  std::iota(order.begin(), order.end(), std::size_t(0));
+  std::ranges::sort(order, {}, [&](std::size_t brick) { return std::tuple(cells_[brick].z, cells_[brick].y, cells_[brick].x); });
+  return order;
 }
 
 void ScalarBricks::reserve(std::size_t bricks) {
@@ -52,7 +60,7 @@ void ScalarBricks::reserve(std::size_t bricks) {
 
 ScalarBricks::Brick& ScalarBricks::makeBrick(glm::ivec3 cell) {
   checkCell(cell);
-  std::int32_t& number = numbers_[cellIndex(cell)];
+  std::int32_t& number = numbers_[cell];
   if (number < 0) {
     FV_CHECK_LT(bricks_.size(), kMaxBricks);
     number = std::int32_t(bricks_.size());
@@ -68,7 +76,7 @@ ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
   result.reserve(bricks().size());
   for (std::size_t i = 0; i < bricks().size(); ++i) {
     const glm::ivec3 cell = cells_[i] - place / kEdge;
-    if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, result.cellCount_))) continue;
+    if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, result.cells()))) continue;
     Brick& brick = result.makeBrick(cell);
     brick = bricks()[i];
     const glm::ivec3 first = cell * kEdge - result.corner_;  // of the brick, in the new box
@@ -84,7 +92,7 @@ ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
 
 void ScalarBricks::copyRow(int y, int z, std::span<float> row) const {
   const glm::ivec3 place(0, y + corner_.y, z + corner_.z);
-  for (int cell = 0; cell < cellCount_.x; ++cell) {
+  for (int cell = 0; cell < cells().x; ++cell) {
     const int begin = std::max(cell * kEdge - corner_.x, 0), end = std::min((cell + 1) * kEdge - corner_.x, dimensions_.x);
     const Brick* const brick = brickAt({cell, place.y / kEdge, place.z / kEdge});
     if (brick == nullptr) {

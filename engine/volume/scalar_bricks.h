@@ -1,5 +1,5 @@
 #pragma once
-// The scalars of a box of voxels, in bricks of which only those with data take memory.
+// The scalars of a box of voxels of any size, in bricks of which only those with data take memory.
 
 #include <tbb/parallel_for.h>
 
@@ -15,6 +15,7 @@
 #include <vector>
 
 #include "engine/core/stages.h"
+#include "engine/volume/sparse_grid.h"
 #include "shaders/interface.h"
 
 namespace freevoxels {
@@ -63,12 +64,12 @@ class ScalarBricks {
 
   const glm::ivec3& dimensions() const { return dimensions_; }
   /// Number of bricks along the axes, whether or not they exist.
-  const glm::ivec3& cells() const { return cellCount_; }
+  const glm::ivec3& cells() const { return numbers_.dimensions(); }
   /// Position of the box's voxel (0,0,0) in its brick.
   const glm::ivec3& corner() const { return corner_; }
   float at(glm::ivec3 voxel) const {
     const glm::ivec3 place = voxel + corner_;
-    const std::int32_t number = numbers_[cellIndex(place / kEdge)];
+    const std::int32_t number = numbers_.at(place / kEdge);
     return number < 0 ? kInactiveVoxel : bricks_[std::size_t(number)][indexInBrick(place % kEdge)];
   }
   /// Sets a voxel, making its brick if it does not exist.
@@ -91,20 +92,20 @@ class ScalarBricks {
   glm::ivec3 cell(std::size_t brick) const { return cells_[brick]; }
   /// The brick at a cell, or null if it does not exist.
   const Brick* brickAt(glm::ivec3 cell) const {
-    const std::int32_t number = numbers_.empty() ? -1 : numbers_[cellIndex(cell)];
+    const std::int32_t number = numbers_.at(cell);
     return number < 0 ? nullptr : &bricks_[std::size_t(number)];
   }
   /// Copies the voxels of a row in the order of x. `row` must have as many elements as the box has voxels
   /// along x.
   void copyRow(int y, int z, std::span<float> row) const;
+  /// The numbers of the bricks in the order of their cells, x fastest.
+  std::vector<std::size_t> inOrder() const;
   /// The part of the box from voxel `low` to `high`. Beyond this box there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
   /// On the host.
-  std::uint64_t bytes() const { return bytesOf(bricks().size(), dimensions_); }
-  static std::uint64_t bytesOf(std::uint64_t bricks, glm::ivec3 dimensions) {
-    const glm::u64vec3 cells = (glm::u64vec3(dimensions) + std::uint64_t(kEdge - 1)) / std::uint64_t(kEdge);
-    return bricks * sizeof(Brick) + cells.x * cells.y * cells.z * sizeof(std::int32_t);
-  }
+  std::uint64_t bytes() const { return bytesOf(bricks().size()) + numbers_.bytes(); }
+  /// The same of a number of bricks, without their index.
+  static std::uint64_t bytesOf(std::uint64_t bricks) { return bricks * (sizeof(Brick) + sizeof(glm::ivec3)); }
 
   static glm::ivec3 placeInBrick(std::size_t index) {
     const int i = int(index);
@@ -115,17 +116,12 @@ class ScalarBricks {
   }
 
  private:
-  std::size_t cellIndex(glm::ivec3 cell) const {
-    return std::size_t(cell.x) + std::size_t(cellCount_.x) *
-                                     (std::size_t(cell.y) + std::size_t(cellCount_.y) * std::size_t(cell.z));
-  }
-
   void number(std::vector<glm::ivec3> cells);
   void checkCell(glm::ivec3 cell) const;
 
-  glm::ivec3 dimensions_{0}, corner_{0}, cellCount_{0};
-  std::vector<std::int32_t> numbers_;  ///< index of each cell's brick, -1 if it does not exist
-  std::vector<glm::ivec3> cells_;      ///< cell of each brick
+  glm::ivec3 dimensions_{0}, corner_{0};
+  SparseGrid<std::int32_t> numbers_{glm::ivec3(0), -1};  ///< index of each cell's brick, -1 if it does not exist
+  std::vector<glm::ivec3> cells_;                        ///< cell of each brick
   Bricks bricks_;
 };
 
@@ -134,7 +130,7 @@ ScalarBricks ScalarBricks::make(glm::ivec3 dimensions, const Function& scalarAt,
                                 const Predicate& mayHoldData, const Progress& progress) {
   constexpr std::size_t kBatch = 512;  // bricks, which take a tenth of a second even where a voxel takes a microsecond
   ScalarBricks result(dimensions);
-  const glm::ivec3 cells = result.cellCount_;
+  const glm::ivec3 cells = result.cells();
   const std::size_t inLayer = std::size_t(cells.x) * std::size_t(cells.y), total = inLayer * std::size_t(cells.z);
   const auto cellOf = [&](std::size_t number) {
     return glm::ivec3(int(number % std::size_t(cells.x)), int(number % inLayer / std::size_t(cells.x)), int(number / inLayer));

@@ -89,22 +89,40 @@ Classes classesOf(std::span<const double> weights) {
   return classes;
 }
 
-/// The values of the active voxels on the six sides of the box; those at the ends of rows, where these do not reach the sides.
-std::vector<float> valuesOnSides(const Volume& volume) {
-  std::vector<float> values;
-  std::vector<float> row(std::size_t(volume.dimensions.x));
-  const glm::ivec3 last = volume.dimensions - 1;
-  const auto isActive = [](float value) { return value != kInactiveVoxel; };
-  for (int z = 0; z <= last.z; ++z)
-    for (int y = 0; y <= last.y; ++y) {
-      volume.scalars.copyRow(y, z, row);
-      if (z == 0 || z == last.z || y == 0 || y == last.y) {
-        std::ranges::copy_if(row, std::back_inserter(values), isActive);
-      } else if (const auto first = std::ranges::find_if(row, isActive); first != row.end()) {
-        values.push_back(*first);
-        values.push_back(*std::find_if(row.rbegin(), row.rend(), isActive));
+/// Adds the values of the active voxels of a column of bricks along x that are on the six sides of the box; those at the ends of rows, where
+/// these do not reach the sides. `column` has the numbers of the bricks that exist, in ascending order.
+void addValuesOnSides(const ScalarBricks& scalars, std::span<const std::size_t> column, std::vector<float>& values) {
+  constexpr int n = ScalarBricks::kEdge;
+  const glm::ivec3 last = scalars.dimensions() - 1, place = scalars.firstVoxel(column.front());
+  std::vector<float> row;
+  for (int z = std::max(-place.z, 0); z < n && place.z + z <= last.z; ++z)
+    for (int y = std::max(-place.y, 0); y < n && place.y + y <= last.y; ++y) {
+      row.clear();
+      for (const std::size_t brick : column) {
+        const int first = scalars.firstVoxel(brick).x;
+        for (int x = std::max(-first, 0); x < n && first + x <= last.x; ++x)
+          if (const float value = scalars.bricks()[brick][ScalarBricks::indexInBrick({x, y, z})]; value != kInactiveVoxel) row.push_back(value);
       }
+      const bool isOnSide = place.z + z == 0 || place.z + z == last.z || place.y + y == 0 || place.y + y == last.y;
+      if (isOnSide)
+        values.insert(values.end(), row.begin(), row.end());
+      else if (!row.empty())
+        values.insert(values.end(), {row.front(), row.back()});
     }
+}
+
+std::vector<float> valuesOnSides(const Volume& volume) {
+  const ScalarBricks& scalars = volume.scalars;
+  const std::vector<std::size_t> order = scalars.inOrder();
+  const auto isSameColumn = [&](std::size_t a, std::size_t b) {
+    return glm::ivec2(scalars.cell(a).y, scalars.cell(a).z) == glm::ivec2(scalars.cell(b).y, scalars.cell(b).z);
+  };
+  std::vector<float> values;
+  for (auto first = order.begin(); first != order.end();) {
+    const auto end = std::find_if_not(first, order.end(), [&](std::size_t brick) { return isSameColumn(brick, *first); });
+    addValuesOnSides(scalars, {first, end}, values);
+    first = end;
+  }
   return values;
 }
 

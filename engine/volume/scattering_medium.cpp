@@ -44,8 +44,14 @@ class MediumTable {
 
 /// The smallest edge, a multiple of `unit`, of which there are at most `most` cells.
 int edgeFor(glm::ivec3 dimensions, std::uint64_t most, int unit) {
-  int edge = unit;
-  while (CellGrid(dimensions, edge).count() > most) edge += unit;
+  const auto cells = [&](int edge) {
+    const CellGrid grid(dimensions, edge);
+    return double(grid.cells.x) * double(grid.cells.y) * double(grid.cells.z);
+  };
+  // There are at least as many cells as fit into the box.
+  const double least = std::cbrt(double(dimensions.x) * double(dimensions.y) * double(dimensions.z) / double(most));
+  int edge = unit * std::max(int(least / unit), 1);
+  while (cells(edge) > double(most)) edge += unit;
   return edge;
 }
 

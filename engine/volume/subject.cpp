@@ -1,7 +1,10 @@
 #include "engine/volume/subject.h"
 
 #include <algorithm>
-
+#include <cstdint>
+#include <glm/gtc/matrix_transform.hpp>
+#include <limits>
+#include <optional>
 
 namespace freevoxels {
 
@@ -44,9 +47,39 @@ ContentCells contentCellsOf(glm::ivec3 dimensions, const Volume& sample, const C
   return content;
 }
 
+namespace {
+
+/// The part of a volume in whose cells something is seen, where its box has more voxels than can be numbered and the part is so small in it that
+/// the cells do not show where it is; nothing otherwise.
+std::optional<Volume> smallContent(const ContentCells& content, const Volume& volume) {
+  constexpr int kSmall = 16;
+  if (volume.voxelCount() <= std::size_t(std::numeric_limits<std::int32_t>::max())) return {};
+  glm::ivec3 low = content.cells.dimensions, high(-1), cell;
+  for (cell.z = 0; cell.z < content.cells.dimensions.z; ++cell.z)
+    for (cell.y = 0; cell.y < content.cells.dimensions.y; ++cell.y)
+      for (cell.x = 0; cell.x < content.cells.dimensions.x; ++cell.x)
+        if (content.cells.at(cell) != 0) {
+          low = glm::min(low, cell);
+          high = glm::max(high, cell);
+        }
+  const glm::ivec3 n = volume.dimensions, first = low * int(content.edge), last = glm::min((high + 1) * int(content.edge), n) - 1;
+  const glm::ivec3 extent = last - first + 1;
+  if (high.x < 0 || std::max({extent.x, extent.y, extent.z}) > std::max({n.x, n.y, n.z}) / kSmall) return {};
+  Volume part = outlineOf(volume);
+  part.dimensions = extent;
+  part.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(first));
+  part.scalars = volume.scalars.cropped(first, last);
+  if (volume.temperature) part.temperature->values = volume.temperature->values.cropped(first, last);
+  return part;
+}
+
+}  // namespace
+
 Subject contentOf(const Volume& volume, const Classification& classification) {
   if (volume.content && isAsBaked(volume, classification)) return *volume.content;
-  return subjectOf(contentCells(volume, classification), volume);
+  const ContentCells content = contentCells(volume, classification);
+  if (const std::optional<Volume> part = smallContent(content, volume)) return contentOf(*part, classification);
+  return subjectOf(content, volume);
 }
 
 Subject subjectOf(const ContentCells& content, const Volume& volume) {

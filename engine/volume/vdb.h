@@ -84,9 +84,9 @@ class EmptyVolumeError : public Error {
 /// Which part of a grid is read, and how.
 struct ReadRequest {
   std::string grid;  ///< "NAME" or "NAME[k]"; empty: the first by the usual names of densities, else the only float grid that can be one
-  std::uint64_t maximumVoxels = 0;  ///< of the box
+  std::uint64_t maximumVoxels = 0;  ///< of the bricks that hold something
   MoreGrids more = {};
-  std::optional<VoxelBox> clipBox = std::nullopt;  ///< read only this part where the whole box has more than `maximumVoxels`
+  std::optional<VoxelBox> clipBox = std::nullopt;  ///< read only this part where the whole has more than `maximumVoxels`
   std::optional<NoData> noData = std::nullopt;     ///< of which voxels hold no data; else the padding of a scan (scan.h) does
   LabelRequest labels = {};
   std::vector<ChannelStyle> channels = {};         ///< if there are any, these grids are drawn in place of `grid` and `more` (channels.h)
@@ -97,8 +97,9 @@ struct ReadRequest {
 /// with temperatures, around their active voxels too. A file of temperatures alone is a flame without density. Where no grid can be told
 /// to be the density it is an error that lists the choice. A level set becomes a density of 1 inside and 0 outside, linear over three
 /// voxels across the surface; labels become solids (labels.h). Fails with ErrorKind::Input if a required grid of `more` does not exist, and
-/// for frustum transforms, other grid types, empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if the box
-/// exceeds `maximumVoxels`, before allocating it.
+/// for frustum transforms, other grid types, empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if what is
+/// occupied exceeds `maximumVoxels`, before allocating it, or the box has an edge of more than 2^30 voxels. Around a box of more than 2^31
+/// voxels, those of value 0 are left out.
 Volume readVdb(const std::filesystem::path& file, const ReadRequest& request);
 Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels, const MoreGrids& more = {},
                const Progress& progress = {});

@@ -31,6 +31,14 @@ bool isLevelSet(const openvdb::GridBase& grid) {
   return grid.isType<openvdb::DoubleGrid>() && areDistances(static_cast<const openvdb::DoubleGrid&>(grid));
 }
 
+bool hasEmptyZeros(const openvdb::GridBase& grid) {
+  constexpr double kMostVoxels = std::numeric_limits<std::int32_t>::max();
+  const openvdb::CoordBBox box = grid.evalActiveVoxelBoundingBox();
+  if (box.empty()) return false;
+  const glm::i64vec3 extent = extentOf(box);
+  return double(extent.x) * double(extent.y) * double(extent.z) > kMostVoxels;
+}
+
 bool isInverted(const openvdb::GridBase& grid) {
   if (grid.isType<openvdb::FloatGrid>()) return static_cast<const openvdb::FloatGrid&>(grid).background() < 0.0f;
   return grid.isType<openvdb::DoubleGrid>() && static_cast<const openvdb::DoubleGrid&>(grid).background() < 0.0;

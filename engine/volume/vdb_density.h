@@ -42,7 +42,8 @@ struct FogToDensity {
   static constexpr int kMargin = 0;
   static constexpr bool kKeepsInactive = false;  // whether it keeps any inactive voxel
   bool hasEmptyTiles = false;                    ///< whether active tiles of value 0 hold nothing: those of densities
-  float operator()(float value, bool active) const { return active ? value : kInactiveVoxel; }
+  bool hasEmptyVoxels = false;                   ///< whether active voxels of value 0 hold nothing
+  float operator()(float value, bool active) const { return active && !(hasEmptyVoxels && value == 0.0f) ? value : kInactiveVoxel; }
   float tile(float value, bool active) const { return active && !(hasEmptyTiles && value == 0.0f) ? value : kInactiveVoxel; }
 };
 
@@ -136,6 +137,20 @@ openvdb::CoordBBox boundsOf(const openvdb::FloatTree& tree,
 /// Whether a grid says that it has densities: it is called a fog volume, and its name is usual for them.
 bool isFog(const openvdb::GridBase& grid);
 
+/// How many voxels the bricks have that `toDensity` keeps something of.
+template <typename ToDensity>
+double occupiedVoxels(const openvdb::FloatTree& tree, const std::vector<const openvdb::FloatTree::LeafNodeType*>& leaves,
+                      const ToDensity& toDensity) {
+  using Leaf = openvdb::FloatTree::LeafNodeType;
+  double voxels = double(Leaf::NUM_VOXELS) *
+                  double(std::ranges::count_if(leaves, [&](const Leaf* leaf) { return holdsData(*leaf, toDensity); }));
+  visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) {
+    const glm::i64vec3 extent = extentOf(box);
+    voxels += double(extent.x) * double(extent.y) * double(extent.z);
+  });
+  return voxels;
+}
+
 /// Whether a grid has signed distances: it is called a level set or, where the program that wrote it does not say so, its background is
 /// the largest distance from a surface, on both sides of which it has voxels.
 bool isLevelSet(const openvdb::GridBase& grid);
@@ -143,11 +158,18 @@ bool isLevelSet(const openvdb::GridBase& grid);
 /// Whether the distances of a level set are negative outside, as its background says.
 bool isInverted(const openvdb::GridBase& grid);
 
+/// Whether active voxels of value 0 hold nothing: those of a grid around which a box has more voxels than can be numbered, where zeros far
+/// away would make it so large. In a smaller box they are values like others, with which their neighbours are interpolated.
+bool hasEmptyZeros(const openvdb::GridBase& grid);
+
 /// Calls `action(toDensity)` with the conversion for the grid's class, or for labels, unless these are null.
 template <typename Action>
 auto withDensity(const openvdb::GridBase& grid, const Labels* labels, const Action& action) {
   if (labels != nullptr) return action(ShownLabel{labels});
-  if (!isLevelSet(grid)) return action(FogToDensity{.hasEmptyTiles = isFog(grid)});
+  if (!isLevelSet(grid)) {
+    const bool empty = hasEmptyZeros(grid);
+    return action(FogToDensity{.hasEmptyTiles = empty || isFog(grid), .hasEmptyVoxels = empty});
+  }
   const double voxelSize = std::cbrt(std::abs(grid.transform().baseMap()->determinant()));
   return action(LevelSetToDensity{float(voxelSize), isInverted(grid) ? -1.0f : 1.0f});
 }

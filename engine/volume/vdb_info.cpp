@@ -10,6 +10,7 @@
 #include "engine/volume/vdb.h"
 #include "engine/volume/vdb_density.h"
 #include "engine/volume/vdb_grids.h"
+#include "engine/volume/vdb_volume.h"
 
 namespace freevoxels {
 
@@ -83,14 +84,14 @@ void describeVoxels(const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
 }
 
 /// Boxes of more voxels are not counted: it would take too long.
-constexpr std::uint64_t kMaxCounted = std::uint64_t(1) << 29;
+constexpr double kMaxCounted = 1 << 29;
 
 template <typename ToDensity>
 std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
                                         const std::vector<const FloatTree::LeafNodeType*>& leaves,
                                         const openvdb::CoordBBox& bounds, const ToDensity& toDensity) {
   const glm::u64vec3 size(extentOf(bounds));
-  if (size.x * size.y * size.z > kMaxCounted) return {};
+  if (voxelsIn(size) > kMaxCounted) return {};
   std::vector<bool> holding(size.x * size.y * size.z, false);
   const auto indexOf = [&](const openvdb::Coord& voxel) {
     const openvdb::Coord place = voxel - bounds.min();
@@ -111,19 +112,15 @@ std::vector<std::uint64_t> storedBlocks(const FloatTree& tree,
 }
 
 template <typename ToDensity>
-std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree::LeafNodeType*>& leaves,
-                        glm::ivec3 dimensions, const ToDensity& toDensity) {
+std::uint64_t hostBytes(const FloatTree& tree, const std::vector<const FloatTree::LeafNodeType*>& leaves, const ToDensity& toDensity) {
   auto bricks = std::uint64_t(
       std::ranges::count_if(leaves, [&](const auto* leaf) { return holdsData(*leaf, toDensity); }));
   visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) {
     const glm::u64vec3 n(extentOf(box));
     bricks += n.x * n.y * n.z / std::tuple_size_v<ScalarBricks::Brick>;
   });
-  return ScalarBricks::bytesOf(bricks, dimensions);
+  return ScalarBricks::bytesOf(bricks);
 }
-
-/// Voxels along an edge of a box whose number of voxels 64 bits hold.
-constexpr std::int64_t kLongestEdge = 1 << 20;
 
 /// Describes the box that readVdb would return, and its occupied blocks.
 void describeBox(const VdbFile::Entry& entry, const openvdb::GridBase::ConstPtr& grid, GridInfo& info) {
@@ -138,13 +135,13 @@ void describeBox(const VdbFile::Entry& entry, const openvdb::GridBase::ConstPtr&
       return;
     }
     const glm::i64vec3 extent = extentOf(box);
-    if (std::max({extent.x, extent.y, extent.z}) > kLongestEdge) {
-      info.unusable = "its box is too large to number its voxels";
+    if (std::max({extent.x, extent.y, extent.z}) > kLongestReadEdge) {
+      info.unusable = fmt::format("its box is too large: it has more than {} voxels along an edge", kLongestReadEdge);
       return;
     }
     info.renderDimensions = glm::ivec3(extent);
     info.storedBlocks = storedBlocks(floats->tree(), leaves, box, toDensity);
-    info.hostBytes = hostBytes(floats->tree(), leaves, info.renderDimensions, toDensity);
+    info.hostBytes = hostBytes(floats->tree(), leaves, toDensity);
   });
 }
 

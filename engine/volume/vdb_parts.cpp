@@ -23,7 +23,6 @@ constexpr int kSampleEdge = 256;
 /// Cubes of this number of voxels along an edge are read at a time, and this number of them is kept in memory.
 constexpr int kCubeEdge = 64;
 constexpr std::size_t kCubes = 16;
-constexpr std::int64_t kLongestPartsEdge = 1 << 20;
 
 /// A copy with the values, which the tree's leaf leaves in the file.
 VdbLeaf load(const VdbLeaf& leaf, const std::string& source) {
@@ -45,10 +44,11 @@ struct VdbParts::Source {
   const VdbFile::Entry* entry = nullptr;
   std::string name;
   FloatGrid::ConstPtr grid;
+  bool hasEmptyTiles = false;
   Outliers outliers;            ///< once the whole volume was read
   std::optional<float> noData;  ///< the value of voxels without data
 
-  FogToDensity toDensity() const { return {.hasEmptyTiles = isFog(*grid)}; }
+  FogToDensity toDensity() const { return {.hasEmptyTiles = isFog(*grid) || hasEmptyTiles}; }
   /// As readVdb has them, without reading values.
   CoordBBox bounds() const {
     CoordBBox bounds;
@@ -71,11 +71,12 @@ std::unique_ptr<VdbParts> VdbParts::open(const std::filesystem::path& path, cons
   const openvdb::GridBase::ConstPtr grid = source->file.read(*source->entry);
   if (!grid->isType<FloatGrid>() || isLevelSet(*grid)) return nullptr;
   source->grid = openvdb::gridConstPtrCast<FloatGrid>(grid);
+  source->hasEmptyTiles = hasEmptyZeros(*grid);
   if (source->grid->tree().leafCount() * sizeof(ScalarBricks::Brick) <= mostBytes) return nullptr;
   const CoordBBox bounds = source->bounds();
   if (bounds.empty()) return nullptr;
   const glm::i64vec3 n = extentOf(bounds);
-  if (voxelsIn(n) > kMaxVoxels || std::max({n.x, n.y, n.z}) > kLongestPartsEdge) return nullptr;
+  if (std::max({n.x, n.y, n.z}) > kLongestReadEdge) return nullptr;
   std::unique_ptr<VdbParts> parts(new VdbParts(std::move(source), request.noData));
   for (const VdbFile::Entry* entry : {channels.temperature(), channels.albedo()})
     if (entry)
@@ -116,10 +117,8 @@ void VdbParts::sumUp() {
           if (const float value = part.scalars.at(v * step + step / 2 - first); value != kInactiveVoxel) sample_.scalars.set(v, value);
   };
 
-  std::vector<glm::ivec3> cubes;
-  for (glm::ivec3 first(0); first.z < n.z; first.z += kCubeEdge)
-    for (first.y = 0; first.y < n.y; first.y += kCubeEdge)
-      for (first.x = 0; first.x < n.x; first.x += kCubeEdge) cubes.push_back(first);
+  std::vector<glm::ivec3> cubes = occupied(kCubeEdge);
+  for (glm::ivec3& cube : cubes) cube *= kCubeEdge;
   ValueSummary whole;
   for (std::size_t first = 0; first < cubes.size(); first += kCubes) {
     std::vector<Volume> parts(std::min(kCubes, cubes.size() - first));
@@ -150,6 +149,24 @@ void VdbParts::sumUp() {
 }
 
 VdbParts::~VdbParts() = default;
+
+std::vector<glm::ivec3> VdbParts::occupied(int edge) const {
+  SparseGrid<std::uint8_t> cubes((outline_.dimensions + edge - 1) / edge);
+  const auto add = [&](const CoordBBox& box) {
+    const auto placeOf = [&](const openvdb::Coord& at) {
+      return glm::clamp(glm::ivec3(at.x(), at.y(), at.z()) - outline_.indexOrigin, glm::ivec3(0), outline_.dimensions - 1) / edge;
+    };
+    const glm::ivec3 low = placeOf(box.min()), high = placeOf(box.max());
+    for (glm::ivec3 cube = low; cube.z <= high.z; ++cube.z)
+      for (cube.y = low.y; cube.y <= high.y; ++cube.y)
+        for (cube.x = low.x; cube.x <= high.x; ++cube.x) cubes[cube] = 1;
+  };
+  for (auto leaf = source_->grid->tree().cbeginLeaf(); leaf; ++leaf) add(leaf->getNodeBoundingBox());
+  visitTiles(source_->grid->tree(), source_->toDensity(), [&](const CoordBBox& box, float) { add(box); });
+  std::vector<glm::ivec3> cells;
+  cubes.forEach([&](glm::ivec3 cube, std::uint8_t) { cells.push_back(cube); });
+  return cells;
+}
 
 Volume VdbParts::read(glm::ivec3 first, int edge) const {
   Volume part = readValues(first, edge);

@@ -4,6 +4,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "engine/volume/scan.h"
 #include "engine/volume/vdb.h"
@@ -23,6 +24,8 @@ class VdbParts {
   const Volume& outline() const { return outline_; }
   /// Single voxels at equal distances, at most 256 along an edge, with the range, the counts of unusual values and the warnings of the whole.
   const Volume& sample() const { return sample_; }
+  /// The cells, in cubes of edge^3 voxels, of those that may hold something.
+  std::vector<glm::ivec3> occupied(int edge) const;
   /// A cube of edge^3 voxels of the box as a volume, summarised; without data beyond the box. Several threads may read. Fails with
   /// ErrorKind::Input if the file is damaged.
   Volume read(glm::ivec3 first, int edge) const;

@@ -1,10 +1,12 @@
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <new>
 
 #include "engine/core/error.h"
 #include "engine/volume/blackbody.h"
 #include "engine/volume/scan.h"
+#include "engine/volume/stray_voxels.h"
 #include "engine/volume/subject.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/vdb_bricks.h"
@@ -20,26 +22,32 @@ namespace {
 using openvdb::CoordBBox;
 using openvdb::FloatGrid;
 
-/// Voxels along an edge of a box, to which margins and edges of bricks are added.
-constexpr std::int64_t kLongestReadEdge = 1 << 30;
+/// What makes a volume too large: what is occupied of it, and 32-bit coordinates.
+struct Size {
+  glm::i64vec3 box{0};
+  double occupied = 0.0;  ///< voxels of the bricks that hold something
 
-void checkSize(const CoordBBox& bounds, std::uint64_t maximumVoxels, const std::string& source) {
-  const glm::i64vec3 extent = extentOf(bounds);
-  if (voxelsIn(extent) <= double(maximumVoxels) && std::max({extent.x, extent.y, extent.z}) <= kLongestReadEdge) return;
+  bool fits(std::uint64_t maximumVoxels) const {
+    return occupied <= double(maximumVoxels) && std::max({box.x, box.y, box.z}) <= kLongestReadEdge;
+  }
+};
+
+void checkSize(const Size& size, std::uint64_t maximumVoxels, const std::string& source) {
+  if (size.fits(maximumVoxels)) return;
+  const glm::i64vec3 box = size.box;
   fail(ErrorKind::OutOfMemory,
-       "{} is too large: its {} x {} x {} box needs {:.0f} voxels and at most {} are possible here; draw a part of it with {}, or "
-       "resample the volume",
-       source, extent.x, extent.y, extent.z, voxelsIn(extent), maximumVoxels, Parameter("clip-box"));
+       "{} is too large: {:.0f} voxels of its {} x {} x {} box are occupied, and at most {} of them and boxes of {} voxels along an edge are "
+       "possible here; draw a part of it with {}, or resample the volume",
+       source, size.occupied, box.x, box.y, box.z, maximumVoxels, kLongestReadEdge, Parameter("clip-box"));
 }
 
-/// The part of the whole box that a clip box counted in it leaves, where the whole has more than `maximumVoxels`.
-CoordBBox clippedBounds(const CoordBBox& whole, const std::optional<VoxelBox>& clip, std::uint64_t maximumVoxels) {
-  if (!clip || voxelsIn(extentOf(whole)) <= double(maximumVoxels)) return whole;
+/// The part of the whole box that a clip box counted in it leaves.
+CoordBBox clippedBounds(const CoordBBox& whole, const VoxelBox& clip) {
   const glm::i64vec3 last = extentOf(whole) - std::int64_t(1);
   CoordBBox part = whole;
   for (int axis = 0; axis < 3; ++axis) {
-    part.max()[axis] = int(whole.min()[axis] + std::min(std::int64_t(clip->last[axis]), last[axis]));
-    part.min()[axis] = int(whole.min()[axis] + std::min(std::int64_t(clip->first[axis]), last[axis]));
+    part.max()[axis] = int(whole.min()[axis] + std::min(std::int64_t(clip.last[axis]), last[axis]));
+    part.min()[axis] = int(whole.min()[axis] + std::min(std::int64_t(clip.first[axis]), last[axis]));
   }
   return part;
 }
@@ -67,25 +75,29 @@ Volume toVolume(FloatGrid::ConstPtr grid, const ToDensity& toDensity, const std:
   if (bounds.empty())
     throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: {}", source,
                                                          labelsOf(request, entry) ? kNoLabelClause : kNothingInsideClause));
-  const CoordBBox whole = bounds;
-  if (const CoordBBox part = clippedBounds(bounds, request.clipBox, request.maximumVoxels); part != bounds) {
-    checkSize(part, request.maximumVoxels, source);
-    bounds = part;
-    grid = clippedGrid(*grid, part);
-    channels.clip(part);
+  const auto sizeNow = [&] {
+    const glm::i64vec3 box = extentOf(bounds);
+    return Size{.box = box, .occupied = std::min(occupiedVoxels(grid->tree(), leaves, toDensity), voxelsIn(box))};
+  };
+  const bool isPart = request.clipBox && !sizeNow().fits(request.maximumVoxels);
+  if (isPart) {
+    bounds = clippedBounds(bounds, *request.clipBox);
+    grid = clippedGrid(*grid, bounds);
+    channels.clip(bounds);
     leaves.clear();
     grid->tree().getNodes(leaves);
   }
-  checkSize(bounds, request.maximumVoxels, source);
+  checkSize(sizeNow(), request.maximumVoxels, source);
 
   Volume volume = boxVolume(grid->transform(), bounds, source);
-  volume.isPart = request.clipBox && voxelsIn(extentOf(whole)) > double(request.maximumVoxels);
+  volume.isPart = isPart;
   volume.scalars = bricksOf(grid->tree(), std::move(leaves), volume.dimensions, volume.indexOrigin, toDensity, request.progress);
   if (entry.valueType == "half") limitOverflow(volume.scalars, volume.overflownVoxels);
   if (const Labels* labels = labelsOf(request, entry))
     showLabels(volume, *labels);
   else
     summariseValues(volume, request.noData ? request.noData->scalar() : std::nullopt);
+  if (voxelsIn(extentOf(bounds)) > double(std::numeric_limits<std::int32_t>::max())) warnOfStrayVoxels(volume);
   channels.addTo(volume);
   if (volume.activeVoxels == 0 && (!volume.temperature || volume.temperature->activeVoxels == 0))
     throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: none of its {} active voxels has a number that is data",
@@ -142,7 +154,8 @@ Volume readMixture(VdbFile& file, const ReadRequest& request) {
   std::vector<FloatGrid::ConstPtr> grids;
   std::vector<std::string> remarks;
   CoordBBox bounds;
-  constexpr FogToDensity kScalar{.hasEmptyTiles = true};
+  double occupied = 0.0;
+  constexpr FogToDensity kScalar{.hasEmptyTiles = true, .hasEmptyVoxels = true};
   for (const ChannelStyle& channel : request.channels) {
     const VdbFile::Entry& entry = entryOf(file, channel);
     checkUsable(file, entry);
@@ -151,13 +164,16 @@ Volume readMixture(VdbFile& file, const ReadRequest& request) {
     std::vector<const VdbLeaf*> leaves;
     grids.back()->tree().getNodes(leaves);
     bounds.expand(boundsOf(grids.back()->tree(), leaves, kScalar));
+    occupied += occupiedVoxels(grids.back()->tree(), leaves, kScalar);
   }
   const std::string source = fmt::format("{} with {} channels", file.path().filename().string(), grids.size());
   if (bounds.empty()) throw EmptyVolumeError(ErrorKind::Input, fmt::format("{} cannot be rendered: {}", source, kEmptyGridClause));
-  const CoordBBox box = clippedBounds(bounds, request.clipBox, request.maximumVoxels);
-  checkSize(box, request.maximumVoxels, source);
+  const Size size{.box = extentOf(bounds), .occupied = occupied};
+  const bool isPart = request.clipBox && !size.fits(request.maximumVoxels);
+  const CoordBBox box = isPart ? clippedBounds(bounds, *request.clipBox) : bounds;
+  if (!isPart) checkSize(size, request.maximumVoxels, source);
   Volume volume = boxVolume(grids.front()->transform(), box, source);
-  volume.isPart = box != bounds;
+  volume.isPart = isPart;
   std::vector<ScalarBricks> values;
   for (FloatGrid::ConstPtr& grid : grids) {
     if (volume.isPart) grid = clippedGrid(*grid, box);

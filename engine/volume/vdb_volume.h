@@ -13,6 +13,9 @@ namespace freevoxels {
 /// Voxels of a box that is not read at once.
 inline constexpr double kMaxVoxels = 1e12;
 
+/// Voxels along an edge of a box, to which margins and edges of bricks are added.
+inline constexpr std::int64_t kLongestReadEdge = 1 << 30;
+
 double voxelsIn(glm::i64vec3 extent);
 
 /// Fails with ErrorKind::Input for types and transforms of grids that cannot be drawn.

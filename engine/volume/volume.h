@@ -4,6 +4,7 @@
 #include <array>
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <limits>
 #include <memory>
 #include <optional>
 #include <string>
@@ -80,7 +81,10 @@ struct Volume {
   /// where the voxels of this volume are to be asked.
   std::shared_ptr<const Subject> content;
 
+  /// Of the box; the largest number there is if it has more.
   std::size_t voxelCount() const {
+    const double count = double(dimensions.x) * double(dimensions.y) * double(dimensions.z);
+    if (count >= 0x1p63) return std::numeric_limits<std::size_t>::max();
     return std::size_t(dimensions.x) * std::size_t(dimensions.y) * std::size_t(dimensions.z);
   }
   float scalar(int x, int y, int z) const { return scalars.at({x, y, z}); }

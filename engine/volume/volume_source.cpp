@@ -15,8 +15,15 @@ constexpr int kEdge = ScalarBricks::kEdge;
 /// The part of some values in a box, in bricks that begin with it.
 ScalarBricks part(const ScalarBricks& values, const VoxelRange& box) {
   if (values.corner() != glm::ivec3(0)) {
-    const ScalarBricks cropped = values.cropped(box.first, box.end - 1);
-    return ScalarBricks::make(box.extent(), [&](glm::ivec3 voxel) { return cropped.at(voxel); });
+    const auto mayHoldData = [&](glm::ivec3 voxel) {  // a brick of the part lies in up to eight
+      const glm::ivec3 low = (box.first + voxel + values.corner()) / kEdge, high = glm::min(low + 1, values.cells() - 1);
+      for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
+        for (cell.y = low.y; cell.y <= high.y; ++cell.y)
+          for (cell.x = low.x; cell.x <= high.x; ++cell.x)
+            if (values.brickAt(cell) != nullptr) return true;
+      return false;
+    };
+    return ScalarBricks::make(box.extent(), [&](glm::ivec3 voxel) { return values.at(box.first + voxel); }, mayHoldData);
   }
   ScalarBricks result(box.extent());
   const glm::ivec3 first = box.first / kEdge, cells = result.cells();
@@ -39,16 +46,16 @@ Volume outlineInMemory(const Volume& volume) {
 
 VolumeInMemory::VolumeInMemory(std::shared_ptr<const Volume> volume) : volume_(std::move(volume)), outline_(outlineInMemory(*volume_)) {}
 
-Cells VolumeInMemory::bricks(int) const {
+SparseGrid<std::uint8_t> VolumeInMemory::bricks(int) const {
   const ScalarBricks& scalars = volume_->scalars;
-  Cells cells((volume_->dimensions + kEdge - 1) / kEdge);
+  SparseGrid<std::uint8_t> cells((volume_->dimensions + kEdge - 1) / kEdge);
   for (std::size_t brick = 0; brick < scalars.bricks().size(); ++brick) {
     // The bricks in memory may begin before the box, and then lie in several of those that begin with it.
     const glm::ivec3 begin = glm::max(scalars.firstVoxel(brick), 0), end = glm::min(scalars.firstVoxel(brick) + kEdge, volume_->dimensions);
     const glm::ivec3 low = begin / kEdge, high = (end - 1) / kEdge;
     for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
       for (cell.y = low.y; cell.y <= high.y; ++cell.y)
-        for (cell.x = low.x; cell.x <= high.x; ++cell.x) cells.values[cells.index(cell)] = 1;
+        for (cell.x = low.x; cell.x <= high.x; ++cell.x) cells[cell] = 1;
   }
   return cells;
 }
@@ -70,8 +77,9 @@ std::shared_ptr<const Volume> known(const std::shared_ptr<const VolumeSource>& s
 }
 
 std::uint64_t brickVoxels(const VolumeSource& source) {
-  const Cells cells = source.bricks();
-  return std::uint64_t(std::ranges::count(cells.values, std::uint8_t(1))) * std::uint64_t(kEdge * kEdge * kEdge);
+  std::uint64_t bricks = 0;
+  source.bricks().forEach([&](glm::ivec3, std::uint8_t) { ++bricks; });
+  return bricks * std::uint64_t(kEdge * kEdge * kEdge);
 }
 
 }  // namespace freevoxels

@@ -7,7 +7,7 @@
 #include <memory>
 
 #include "engine/core/stages.h"
-#include "engine/volume/coarse_cells.h"
+#include "engine/volume/sparse_grid.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -16,6 +16,7 @@ namespace freevoxels {
 struct VoxelRange {
   glm::ivec3 first{0}, end{0};
   glm::ivec3 extent() const { return end - first; }
+  bool operator==(const VoxelRange&) const = default;
 };
 
 /// A volume and, where they are stored, coarser levels of it: a voxel of level l is the mean of a cube of 2^l voxels of level 0, at the
@@ -30,7 +31,7 @@ class VolumeSource {
   /// The level as a volume without values.
   virtual const Volume& outline(int level = 0) const = 0;
   /// Marks the bricks (ScalarBricks) of a level that have data, with 1.
-  virtual Cells bricks(int level = 0) const = 0;
+  virtual SparseGrid<std::uint8_t> bricks(int level = 0) const = 0;
   /// A box of a level as a volume of its own, which keeps the whole level's ranges and has its part of the bricks. The box begins at
   /// multiples of ScalarBricks::kEdge, and ends at such or with the level. A file fails with ErrorKind::Input where it is damaged.
   virtual Volume read(int level, const VoxelRange& box) const = 0;
@@ -47,7 +48,7 @@ class VolumeInMemory : public VolumeSource {
   bool isInMemory() const override { return true; }
   int levels() const override { return 1; }
   const Volume& outline(int) const override { return outline_; }
-  Cells bricks(int) const override;
+  SparseGrid<std::uint8_t> bricks(int) const override;
   Volume read(int level, const VoxelRange& box) const override;
   std::shared_ptr<const Volume> whole(const Progress&) const override { return volume_; }
 

@@ -3,6 +3,8 @@
 
 #include "engine/cube_drawing.h"
 
+#include <glm/gtc/matrix_transform.hpp>
+
 #include "engine/cube_level.h"
 #include "engine/renderer.h"
 #include "engine/storage/baked_source.h"
@@ -200,6 +202,77 @@ TEST_F(CubeDrawingTest, ALimitBelowTheLeastIsAnErrorThatNamesALimitWhichIsEnough
     const Device enough(instance(), "", std::stoull(sentence.substr(place + 9)) << 20);
     EXPECT_NO_THROW(Renderer(enough, source, classification, {}).render(camera, settings)) << sentence;
   }
+}
+
+/// A volume at a place of a box of a million voxels along each axis, in the world where it was; and a brick of `density` at each corner of
+/// `others`.
+Volume farAway(const Volume& volume, glm::ivec3 place, std::span<const glm::ivec3> others, float density) {
+  const glm::ivec3 size(1'000'008);
+  Volume far{.source = "far", .dimensions = size, .scalars = ScalarBricks(size)};
+  far.indexToWorld = glm::translate(volume.indexToWorld, -glm::dvec3(place));
+  glm::ivec3 v;
+  for (v.z = 0; v.z < volume.dimensions.z; ++v.z)
+    for (v.y = 0; v.y < volume.dimensions.y; ++v.y)
+      for (v.x = 0; v.x < volume.dimensions.x; ++v.x)
+        if (const float scalar = volume.scalars.at(v); scalar != kInactiveVoxel) far.scalars.set(place + v, scalar);
+  for (const glm::ivec3 corner : others) far.scalars.makeBrick(corner / ScalarBricks::kEdge).fill(density);
+  summariseValues(far);
+  return far;
+}
+
+TEST_F(CubeDrawingTest, AnIslandInABoxOfAMillionVoxelsIsDrawnAsAlone) {
+  const Volume alone = randomVolume({41, 36, 43}, shearedTransform({41, 36, 43}), 0.5, 3.0);
+  const Classification classification{.densityScale = 0.1};
+  FrameSettings settings{.size = {40, 32}};
+  settings.gather().sampleTolerance = 0.0f;
+  settings.lighting = Lighting{.lights = {{.place = {1.0, 0.7, 0.2}}}, .attenuation = LightAttenuation::Exact};
+  const std::array<glm::ivec3, 2> corners{glm::ivec3(0), glm::ivec3(1'000'000)};  // out of sight
+  for (const bool lit : {false, true}) {
+    if (!lit) settings.lighting.reset();
+    for (const bool orthographic : {false, true}) {
+      const Camera camera = framingCamera(alone, 35.0, 25.0, 1.2, {.orthographic = orthographic});
+      const Image expected = Renderer(device(), alone, classification, {}).render(camera, settings);
+      // Across borders of regions, too.
+      for (const glm::ivec3 place : {glm::ivec3(700'001, 640'003, 91'234), glm::ivec3(8192 * 50 - 20, 8192 * 3 - 17, 8192 * 100 - 9)}) {
+        const Volume far = farAway(alone, place, corners, 1.0f);
+        Renderer renderer(device(), far, classification, {});
+        EXPECT_GT(psnr(renderer.render(camera, settings), expected), 60.0) << lit << orthographic << place.x;
+        EXPECT_TRUE(renderer.drewInCubes());
+      }
+    }
+    settings.lighting = Lighting{.lights = {{.place = {1.0, 0.7, 0.2}}}, .attenuation = LightAttenuation::Exact};
+  }
+}
+
+TEST_F(CubeDrawingTest, AnIslandFarAwayCastsItsShadow) {
+  const Volume alone = randomVolume({7, 7, 7}, glm::dmat4(1.0), 0.5, 3.0);
+  const glm::ivec3 place(500'000, 500'000, 16);
+  std::vector<glm::ivec3> wall;  // 5 x 5 bricks between the volume and the light
+  for (int i = -2; i <= 2; ++i)
+    for (int j = -2; j <= 2; ++j) wall.emplace_back(place + glm::ivec3(8 * i, 8 * j, 900'000));
+  const Classification classification{.densityScale = 0.1};
+  FrameSettings settings{.size = {24, 24}};
+  settings.gather().sampleTolerance = 0.0f;
+  settings.lighting = Lighting{.lights = {{.place = {0.0, 0.0, 1.0}}}, .attenuation = LightAttenuation::Exact};
+  const Camera camera = framingCamera(alone, 35.0, 25.0, 1.0, {});
+  const Volume far = farAway(alone, place, wall, 0.75f);
+  const Image shadowed = Renderer(device(), far, classification, {}).render(camera, settings);
+  settings.lighting->lights.front().intensity = std::exp(-0.1 * 0.75 * 8.0);
+  const Image dimmed = Renderer(device(), alone, classification, {}).render(camera, settings);
+  EXPECT_GT(psnr(shadowed, dimmed), 55.0);
+  settings.lighting->lights.front().intensity = 1.0;
+  EXPECT_LT(psnr(shadowed, Renderer(device(), alone, classification, {}).render(camera, settings)), 40.0);
+}
+
+TEST_F(CubeDrawingTest, SplatsOfMoreVoxelsThanCanBeNumberedAreRefused) {
+  const std::array<glm::ivec3, 2> corners{glm::ivec3(0), glm::ivec3(1'000'000)};
+  const Volume far = farAway(randomVolume({5, 5, 5}, glm::dmat4(1.0), 0.5, 3.0), glm::ivec3(64), corners, 1.0f);
+  FrameSettings settings{.size = {8, 8}};
+  settings.method = SplatSettings{};
+  Renderer renderer(device(), far, {}, {});
+  const Camera camera = framingCamera(far, 35.0, 25.0, 1.0, {});
+  test::expectRefusal([&] { renderer.render(camera, settings); }, ErrorKind::OutOfMemory,
+                      {"1000008x1000008x1000008", fmt::format("{} of which have data", far.activeVoxels), "splats"});
 }
 
 TEST_F(CubeDrawingTest, WhatNeedsTheWholeVolumeIsSaid) {

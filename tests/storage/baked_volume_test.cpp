@@ -326,10 +326,28 @@ TEST(BakedVolume, APartThatIsReadIsThatOfTheWhole) {
   }
 }
 
+TEST(BakedVolume, VoxelsFarApartAreBakedAndReadBack) {
+  const test::TemporaryFolder folder;
+  Volume volume{.source = "far", .dimensions = {20'000'001, 40, 9}, .scalars = ScalarBricks({20'000'001, 40, 9}, {3, 0, 5})};
+  const std::vector<glm::ivec3> places{{0, 0, 0}, {8191, 39, 8}, {8192, 0, 4}, {20'000'000, 39, 8}};
+  for (const glm::ivec3 place : places) volume.scalars.set(place, 0.5f + float(place.x % 7));
+  summariseValues(volume);
+  bakeVolume(folder / "a.fvx", volume, kDense, {.keepScalars = true});
+  const auto file = std::make_shared<const fvx::FvxFile>(folder / "a.fvx");
+  EXPECT_EQ(file->levels(), fvx::kMaxLevels);
+  EXPECT_EQ(finestLevel(*file, 4 * 512), 0);
+  const Volume read = readBaked(file);
+  EXPECT_EQ(read.activeVoxels, places.size());
+  for (const glm::ivec3 place : places) EXPECT_EQ(read.scalars.at(place), volume.scalars.at(place));
+  const Volume part = BakedSource(file).read(0, {{20'000'000 - 64, 32, 0}, {20'000'001, 40, 9}});
+  EXPECT_EQ(part.scalars.at({64, 7, 8}), volume.scalars.at(places.back()));
+  EXPECT_EQ(readBaked(file, 8).activeVoxels, places.size());
+}
+
 TEST(BakedVolume, AVolumeThatIsTooLongIsRefused) {
   const test::TemporaryFolder folder;
-  const StreamedVolume volume{.outline = {.source = "long", .dimensions = {8193, 1, 1}}, .content = {.cells = Cells(glm::ivec3(1))}};
-  test::expectRefusal([&] { bakeStreamed(folder / "a.fvx", volume, kDense, {}); }, ErrorKind::Input, {"long", "8193", "8192"});
+  const StreamedVolume volume{.outline = {.source = "long", .dimensions = {fvx::kLongestEdge + 1, 1, 1}}, .content = {.cells = Cells(glm::ivec3(1))}};
+  test::expectRefusal([&] { bakeStreamed(folder / "a.fvx", volume, kDense, {}); }, ErrorKind::Input, {"long", "67108865", "67108864"});
   EXPECT_EQ(folder.fileCount(), 0u);
 }
 

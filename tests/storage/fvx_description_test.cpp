@@ -20,7 +20,7 @@ struct BadValues {
 TEST_F(FvxDescription, DescriptionsThatCannotBeAreRefusedInOneSentence) {
   const nlohmann::json number = 1e300, text = "text", none = nullptr, list = nlohmann::json::array(), half = 0.5;
   const std::vector<BadValues> bad{
-      {"/dimensions/0", {0, -1, 8193, number, half, text, none, 4294967297LL}},
+      {"/dimensions/0", {0, -1, 67108865, number, half, text, none, 4294967297LL}},
       {"/dimensions", {list, text, {1, 2}, {1, 2, 3, 4}}},
       {"/index_origin/1", {2147483647, 4294967296LL, number, half, text}},
       {"/index_to_world/0", {0.0, 1e-300, number, text, none}},

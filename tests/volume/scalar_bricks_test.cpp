@@ -106,9 +106,19 @@ TEST(ScalarBricks, ABrickBeyondTheBoxOrThereTwiceIsABug) {
   }
 }
 
-TEST(ScalarBricks, CellsOfTheLongestBoxAreCountedWithoutOverflow) {
-  constexpr int kLongest = std::numeric_limits<int>::max();
-  EXPECT_EQ(ScalarBricks::bytesOf(0, {kLongest, 1, 1}), std::uint64_t(1) << 30);
+TEST(ScalarBricks, TheLongestBoxTakesTheMemoryOfItsBricks) {
+  const glm::ivec3 size((1 << 30) - 3), last = size - 1;
+  ScalarBricks bricks(size, glm::ivec3(5, 0, 7));
+  EXPECT_EQ(bricks.at(last), kInactiveVoxel);
+  bricks.set(glm::ivec3(0), 1.0f);
+  bricks.set(last, 2.0f);
+  EXPECT_EQ(bricks.at(glm::ivec3(0)), 1.0f);
+  EXPECT_EQ(bricks.at(last), 2.0f);
+  EXPECT_EQ(bricks.at(last - 1), kInactiveVoxel);
+  EXPECT_EQ(bricks.at({0, last.y, 0}), kInactiveVoxel);
+  EXPECT_EQ(bricks.bricks().size(), 2u);
+  EXPECT_LT(bricks.bytes(), 1u << 14);
+  EXPECT_EQ(bricks.cropped(last - 20, last).at(glm::ivec3(20)), 2.0f);
 }
 
 }  // namespace

@@ -166,14 +166,14 @@ TEST_F(Vdb, UpIsPlusZWhereTheMetadataAreThoseOfBlender) {
   EXPECT_EQ(read().up, z);
 }
 
-TEST_F(Vdb, APartOfATooLargeBoxIsRead) {
-  write({makeGrid("density", CoordBBox(Coord(0), Coord(6)), 1.0f), makeGrid("heat", CoordBBox(Coord(0), Coord(6)), 0.5f)});
+TEST_F(Vdb, APartOfATooLargeVolumeIsRead) {
+  constexpr std::uint64_t kOneBrick = 512;
   const FloatGrid::Ptr far = makeGrid("density", CoordBBox(Coord(0), Coord(6)), 1.0f);
   far->tree().setValueOn(Coord(1 << 22), 0.25f);
   write({far, makeGrid("heat", CoordBBox(Coord(0), Coord(6)), 0.5f)});
-  EXPECT_THROW(read(), Error);
+  EXPECT_THROW(readVdb(file, "", kOneBrick), Error);
   const ReadRequest part{
-      .maximumVoxels = kPlenty, .more = {.temperature = GridRequest{}}, .clipBox = VoxelBox{.first = {2, 1, 0}, .last = {11, 12, 13}}};
+      .maximumVoxels = kOneBrick, .more = {.temperature = GridRequest{}}, .clipBox = VoxelBox{.first = {2, 1, 0}, .last = {11, 12, 13}}};
   const Volume volume = readVdb(file, part);
   EXPECT_TRUE(volume.isPart);
   EXPECT_EQ(volume.dimensions, glm::ivec3(10, 12, 14));
@@ -249,15 +249,47 @@ TEST_F(Vdb, EmptyGridsAndFilesAreRefused) {
   EXPECT_TRUE(describeVdb(file).empty());
 }
 
-TEST_F(Vdb, TooLargeABoxIsRefusedBeforeItIsAllocated) {
+TEST_F(Vdb, WhatIsOccupiedCountsAndNotTheBox) {
   const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(0), Coord(0)), 1.0f);
-  grid->tree().setValueOn(Coord(999'999, 1'999'999, 2'999'999), 1.0f);
+  const Coord far(999'999, 1'999'999, 2'999'999);
+  grid->tree().setValueOn(far, 0.5f);
   write({grid});
-  expectRefusal([&] { read(); }, ErrorKind::OutOfMemory,
-                {"test.vdb density", "1000000 x 2000000 x 3000000", "6000000000000000000", std::to_string(kPlenty), "clip-box"});
+  const Volume volume = readVdb(file, "", 1024);
+  EXPECT_EQ(volume.dimensions, glm::ivec3(1'000'000, 2'000'000, 3'000'000));
+  EXPECT_EQ(volume.activeVoxels, 2u);
+  EXPECT_EQ(volume.scalar(far.x(), far.y(), far.z()), 0.5f);
+  expectRefusal([&] { readVdb(file, "", 1023); }, ErrorKind::OutOfMemory,
+                {"test.vdb density", "1024 voxels", "1000000 x 2000000 x 3000000", "1023", "clip-box"});
   write({makeGrid("density", CoordBBox(Coord(0), Coord(9)), 1.0f)});
   EXPECT_NO_THROW(readVdb(file, "", 1000));
   expectRefusal([&] { readVdb(file, "", 999); }, ErrorKind::OutOfMemory, {"10 x 10 x 10", "1000", "999"});
+}
+
+TEST_F(Vdb, ZerosFarAwayAreEmptyAndZerosNearbyAreNot) {
+  for (const openvdb::GridClass gridClass : {openvdb::GRID_FOG_VOLUME, openvdb::GRID_UNKNOWN}) {
+    const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(1, 2, 3), Coord(20)), 1.0f);
+    grid->setGridClass(gridClass);
+    grid->tree().setValueOn(Coord(30, 2, 3), 0.0f);
+    write({grid});
+    EXPECT_EQ(read().dimensions, glm::ivec3(30, 19, 18));
+    grid->tree().setValueOn(Coord(5, 1 << 20, 5), 0.0f);
+    grid->tree().addTile(1, Coord(1 << 20, 8, 0), 0.0f, true);
+    grid->tree().addTile(2, Coord(0, 0, 1 << 24), 0.0f, true);
+    write({grid});
+    EXPECT_EQ(read().dimensions, glm::ivec3(20, 19, 18));
+    EXPECT_EQ(read().activeVoxels, 20u * 19u * 18u);
+    EXPECT_TRUE(read().warnings.empty());
+  }
+}
+
+TEST_F(Vdb, AWarningNamesTheBoxWithoutStrayVoxels) {
+  const FloatGrid::Ptr grid = makeGrid("density", CoordBBox(Coord(-4, 0, 0), Coord(35, 39, 39)), 1.0f);
+  grid->tree().setValueOn(Coord(20'000'000, 0, 0), 1.0f);
+  write({grid});
+  const std::vector<std::string> warnings = read().warnings;
+  ASSERT_EQ(warnings.size(), 1u);
+  EXPECT_NE(warnings.front().find("1 of the 64001 voxels"), std::string::npos) << warnings.front();
+  EXPECT_NE(warnings.front().find("0,0,0,39,39,39"), std::string::npos) << warnings.front();
 }
 
 TEST_F(Vdb, AFullDiskIsReportedAndLeavesNothing) {
