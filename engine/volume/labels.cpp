@@ -26,6 +26,10 @@ float densityOf(float opacity) {
   return float(std::min(depth / kSolidOpticalDepth, 1.0));
 }
 
+bool isInBox(glm::ivec3 voxel, glm::ivec3 dimensions) {
+  return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, dimensions));
+}
+
 /// A label as it is drawn: not at all with density kInactiveVoxel.
 struct Look {
   float density = kInactiveVoxel;
@@ -51,9 +55,7 @@ class Neighbourhood {
       for (v.y = -kReach; v.y < kEnd; ++v.y)
         for (v.x = -kReach; v.x < kEnd; ++v.x, ++index) {
           const glm::ivec3 voxel = firstVoxel + v;
-          const bool isInside =
-              glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, values.dimensions()));
-          const float scalar = isInside ? values.at(voxel) : kInactiveVoxel;
+          const float scalar = isInBox(voxel, values.dimensions()) ? values.at(voxel) : kInactiveVoxel;
           const std::int64_t label = scalar == kInactiveVoxel ? 0 : labelOf(scalar);
           if (label != std::exchange(last, label)) look = lookOf(labels, label);
           looks_[index] = look;
@@ -123,9 +125,11 @@ void showLabels(Volume& volume, const Labels& labels) {
   AlbedoGrid colors{.name = "labels", .values = {}, .isMade = true};
   colors.values.fill(densities);
   tbb::parallel_for(std::size_t(0), densities.bricks().size(), [&](std::size_t brick) {
-    const Neighbourhood there(values, densities.firstVoxel(brick), labels);
+    const glm::ivec3 first = densities.firstVoxel(brick);
+    const Neighbourhood there(values, first, labels);
     for (std::size_t i = 0; i < densities.bricks()[brick].size(); ++i) {
-      const Look look = there.at(ScalarBricks::placeInBrick(i));
+      const glm::ivec3 place = ScalarBricks::placeInBrick(i);
+      const Look look = isInBox(first + place, volume.dimensions) ? there.at(place) : Look();
       densities.bricks()[brick][i] = look.density;
       for (int c = 0; c < 3; ++c) colors.values[std::size_t(c)].bricks()[brick][i] = look.color[c];
     }
