@@ -61,7 +61,7 @@ struct Volume {
   std::uint64_t outlierVoxels = 0;
   float farthestOutlier = 0.0f;
   std::optional<float> padding;  ///< of a scan: the value that was taken for no data (scan.h)
-  bool isPart = false;           ///< whether readVdb has left out what is beyond the clip box, as the whole would be too large
+  bool isPart = false;           ///< whether what is beyond the clip box has not been read
   /// Whether the file says that the scalars are densities: it calls the grid a fog volume, and density or a usual name of it.
   bool isFog = false;
 
