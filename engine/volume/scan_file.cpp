@@ -160,7 +160,7 @@ Opened openScan(const fs::path& file, const ScanRequest& request) {
 void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximumVoxels) {
   const glm::ivec3 size = opened.header.dimensions;
   const std::uint64_t voxels = opened.header.samples();
-  const std::uint64_t bytes = ScalarBricks::bytesOf(voxels / std::tuple_size_v<ScalarBricks::Brick>, size) + opened.reader->bytesToRead();
+  const std::uint64_t bytes = ScalarBricks::bytesOf(voxels / std::tuple_size_v<ScalarBricks::Brick>) + opened.reader->bytesToRead();
   if (voxels > maximumVoxels)
     fail(ErrorKind::OutOfMemory,
          "'{}' is too large: its {} x {} x {} voxels are more than the {} that are possible here; resample or crop it", file.string(),
