@@ -11,6 +11,7 @@
 #include <cstdarg>
 #include <cstdio>
 #include <iterator>
+#include <limits>
 #include <map>
 #include <memory>
 #include <span>
@@ -131,7 +132,8 @@ std::string startOf(const std::filesystem::path& file, std::size_t most) {
 
 /// Where the values of a file are, as far as that can be told.
 struct Payload {
-  std::optional<std::uint64_t> bytes;
+  static constexpr std::uint64_t kUnknown = std::numeric_limits<std::uint64_t>::max();
+  std::uint64_t bytes = kUnknown;
   bool isCompressed = false;
 };
 
@@ -163,7 +165,7 @@ Payload checkMetaHeader(const std::filesystem::path& file) {
   else if (where.find_first_of(" %") == std::string::npos && where != "LIST")
     payload.bytes = std::filesystem::file_size(file.parent_path() / where);  // a missing file is an error
   const bool isText = values["BinaryData"].starts_with('F');
-  if (isText) payload.bytes.reset();
+  if (isText) payload.bytes = Payload::kUnknown;
   return payload;
 }
 
@@ -183,7 +185,7 @@ class ItkScan : public ScanReader {
  public:
   ItkScan(const std::filesystem::path& file, ItkFormat format) : path_(file), format_(format), io_(readerOf(format)) {
     Payload payload{.bytes = std::filesystem::file_size(path_), .isCompressed = format_ != ItkFormat::Vtk && !hasEnding(".nii")};
-    if (hasEnding(".nhdr")) payload.bytes.reset();
+    if (hasEnding(".nhdr")) payload.bytes = Payload::kUnknown;
     if (format_ == ItkFormat::MetaImage) payload = checkMetaHeader(path_);
     if (format_ == ItkFormat::Nifti) checkNiftiHeader(path_);
     quietItk(path_, [&] {
@@ -197,8 +199,8 @@ class ItkScan : public ScanReader {
     header_.format = nameOf(format);
     takeTimeSteps();
     describeNifti();
-    if (payload.bytes)
-      checkPayload(path_, header_.samples() * std::uint64_t(header_.timeSteps) * bytesOf(header_.type), *payload.bytes,
+    if (payload.bytes != Payload::kUnknown)
+      checkPayload(path_, header_.samples() * std::uint64_t(header_.timeSteps) * bytesOf(header_.type), payload.bytes,
                    payload.isCompressed);
   }
 
