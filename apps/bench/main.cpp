@@ -14,6 +14,7 @@
 #include "apps/common/text_table.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/validation/cluster_scaling.h"
 
 namespace {
