@@ -21,7 +21,7 @@ using test::expectRefusal;
 using test::kPlenty;
 using test::Vdb;
 
-constexpr LabelRequest kNoRequest;
+const LabelRequest kNoRequest;
 
 glm::vec3 colorAt(const Volume& volume, glm::ivec3 voxel) {
   return albedoOf({}, *volume.albedo, voxel);

@@ -10,10 +10,10 @@
 namespace freevoxels {
 namespace {
 
-constexpr int kMost = 1 << 27;
+constexpr int kLongest = 1 << 27;
 
 /// A box with a table of its nodes, one at a node's border, and one whose nodes are hashed.
-const std::array<glm::ivec3, 3> kBoxes{glm::ivec3(19, 8, 33), glm::ivec3(8, 16, 64), glm::ivec3(kMost - 3, 11, kMost)};
+const std::array<glm::ivec3, 3> kBoxes{glm::ivec3(19, 8, 33), glm::ivec3(8, 16, 64), glm::ivec3(kLongest - 3, 11, kLongest)};
 
 TEST(SparseGrid, KeepsWhatIsSetAtBordersOfNodesAndOfTheBox) {
   for (const glm::ivec3 size : kBoxes) {
@@ -45,8 +45,8 @@ TEST(SparseGrid, KeepsWhatIsSetAtBordersOfNodesAndOfTheBox) {
 }
 
 TEST(SparseGrid, AnEmptyGridHasNoNodes) {
-  const SparseGrid<std::uint8_t> grid(glm::ivec3(kMost));
-  EXPECT_EQ(grid.at(glm::ivec3(kMost - 1)), 0);
+  const SparseGrid<std::uint8_t> grid{glm::ivec3(kLongest)};
+  EXPECT_EQ(grid.at(glm::ivec3(kLongest - 1)), 0);
   EXPECT_TRUE(grid.nodes().empty());
   EXPECT_EQ(SparseGrid<int>().dimensions(), glm::ivec3(0));
 }
