@@ -71,7 +71,7 @@ TEST_F(LayersTest, LabelsAndChannelsAreBakedAsTheyAreDrawn) {
   for (const std::string look : {"--grid dapi --labels all", "--channel dapi:blue --channel gfp", "--channel 0:blue:emission"}) {
     SCOPED_TRACE(look);
     expectSuccess(run("bake @dyes.vdb @a.fvx --quiet " + look));
-    for (const std::string file : {"dyes.vdb " + look, std::string("a.fvx")})
+    for (const std::string& file : {"dyes.vdb " + look, std::string("a.fvx")})
       expectSuccess(run("render @" + file + " @" + file.substr(0, 1) + ".exr --size 40x32 --quiet --unlit"));
     EXPECT_GT(compareImages(readExr(folder / "a.exr"), readExr(folder / "d.exr")).psnr, 40.0);
     std::filesystem::remove(folder / "a.fvx");

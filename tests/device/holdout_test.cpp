@@ -131,8 +131,9 @@ TEST_F(HoldoutTest, CubesAndSharesAreTheWholeImage) {
   const Image shared = resolveSums(sums, true);
   EXPECT_LE(largestPixelDifference(shared, whole), 2e-5);
   for (std::size_t i = 0; i < whole.depth.size(); ++i)
-    if (settings.holdout->depths[i] < kNothing && std::isfinite(whole.depth[i]))
+    if (settings.holdout->depths[i] < kNothing && std::isfinite(whole.depth[i])) {
       EXPECT_LE(whole.depth[i], settings.holdout->depths[i] * 1.0001f);
+    }
   settings.gather().sampleTolerance = 0.0f;  // as cubes have every ray marched
   settings.lod = 0.0f;
   const Image marched = renderer.render(camera, settings);
