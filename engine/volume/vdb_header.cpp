@@ -45,6 +45,7 @@ void checkRegularFile(const fs::path& file) {
     const std::string meant = suggestion(file.filename().string(), namesBeside(file));
     fail(ErrorKind::Input, "there is no file '{}'{}", file.string(), meant.empty() ? "; check the name" : meant);
   }
+  if (fs::is_directory(status)) fail(ErrorKind::Input, "'{}' is a folder; name an OpenVDB file in it", file.string());
   if (!fs::is_regular_file(status))
     fail(ErrorKind::Input, "'{}' is not a regular file; copy its contents into a .vdb file first",
          file.string());

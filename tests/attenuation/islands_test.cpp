@@ -46,7 +46,7 @@ TEST(Islands, ManyBecomeFewer) {
 }
 
 TEST(Islands, AnIslandBehindAnotherHasItsDepthInFront) {
-  const std::vector<VoxelRange> boxes{{glm::ivec3(0), glm::ivec3(16)}, {{0, 0, 5000}, {16, 16, 5016}}, {{900, 0, 5000}, {916, 16, 5016}}};
+  const std::vector<VoxelRange> boxes{{glm::ivec3(0), glm::ivec3(16)}, {{0, 0, 5000}, {16, 16, 5016}}, {{9000, 0, 5000}, {9016, 16, 5016}}};
   for (const RaySource source : {RaySource{.place = {0.0, 0.0, -1.0}, .atInfinity = true}, RaySource{.place = {7.5, 7.5, -40.0}}}) {
     std::vector<IslandRays> islands;
     for (const VoxelRange& box : boxes) {

@@ -75,6 +75,11 @@ SceneDescription others(const TemporaryFolder& folder) {
   SceneDescription scene;
   scene.input.volume = (folder / "a.vdb").string();
   scene.input.noData = NoData{};
+  scene.input.raw = RawLayout{.dimensions = {4, 5, 6}, .type = SampleType::I16, .isBigEndian = true, .headerBytes = 12};
+  scene.input.series = "1.2.840.5";
+  scene.input.timeStep = 3;
+  scene.input.spacing = glm::dvec3(0.5, 0.25, 3.0);
+  scene.camera.holdout = (folder / "depth.exr").string();
   scene.classification.transferFunction = R"({"opacity":[[0,0],[1,0.5]]})";
   scene.emission.emission = true;
   scene.camera.orbit = glm::dvec2(10.0, -20.0);

@@ -43,7 +43,7 @@ TEST_F(LightLayersTest, AddUpToTheImageAndAreThoseOfEachLightAlone) {
       sum.pixels[i] += layer.pixels[i];
       most = std::max(most, double(layer.pixels[i].g));
     }
-    EXPECT_GT(most, 0.02) << name;
+    EXPECT_GT(most, 0.01) << name;
   }
   double largest = 0.0;
   for (std::size_t i = 0; i < sum.pixels.size(); ++i) {

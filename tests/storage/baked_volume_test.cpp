@@ -189,9 +189,15 @@ TEST(BakedVolume, FinestLevelIsTheFirstThatFits) {
   const test::TemporaryFolder folder;
   bakeVolume(folder / "a.fvx", test::smoothVolume(), kDense, {});
   const FvxFile file(folder / "a.fvx");
-  EXPECT_EQ(finestLevel(file, 70 * 41 * 37), 0);
-  EXPECT_EQ(finestLevel(file, 70 * 41 * 37 - 1), 1);
-  EXPECT_EQ(finestLevel(file, 18 * 11 * 10), 2);
+  const auto stored = [&](int level) {  // voxels of the bricks, or of the box
+    std::uint64_t bricks = 0;
+    for (const fvx::ChunkEntry& chunk : file.chunks(fvx::Channel::Scalars, level)) bricks += std::uint64_t(chunk.bricks());
+    const glm::u64vec3 box(file.dimensions(level));
+    return std::min(bricks * fvx::kBrickVoxels, box.x * box.y * box.z);
+  };
+  EXPECT_EQ(finestLevel(file, stored(0)), 0);
+  EXPECT_EQ(finestLevel(file, stored(0) - 1), 1);
+  EXPECT_EQ(finestLevel(file, stored(2)), 2);
   test::expectRefusal([&] { finestLevel(file, 100); }, ErrorKind::OutOfMemory, {"a.fvx", "memory-limit"});
 }
 

@@ -110,8 +110,8 @@ TEST_F(VdbInfo, TheDefaultGridIsDensityOrTheOnlyFloatGrid) {
   EXPECT_EQ(read().maximum, 0.3f);
   write({makeGrid("a"), velocity, makeGrid("b")});
   expectReadRefused({file.string(), "'a' (float)", "'velocity' (vec3s)", "'b' (float)", "choose one with grid: "});
-  write({velocity, named<openvdb::BoolGrid>(openvdb::BoolGrid::create(), "mask")});
-  expectReadRefused({file.string(), "'velocity' (vec3s)", "'mask' (bool)"});
+  write({velocity, named<openvdb::Vec3IGrid>(openvdb::Vec3IGrid::create(), "ids")});
+  expectReadRefused({file.string(), "'velocity' (vec3s)", "'ids' (vec3i)"});
   expectReadRefused({"no grid 'smoke'", "'velocity' (vec3s)"}, "smoke");
 }
 
