@@ -28,13 +28,14 @@ int behindEye(glm::ivec3 cell, const RaySource& eye) {
   return sum;
 }
 
-/// Edge of the regions of a volume in which positions on rays are counted from a place of their own, in voxels: from far away, single
-/// precision would not tell neighbouring positions apart. A volume that is not longer is a region.
-constexpr int kRegionEdge = 1 << 13;
+/// Positions on rays are counted from a place of their own in each region of this edge, in voxels, where the volume has an edge of more than
+/// kLongestRegion: from far away, single precision would not tell neighbouring positions apart.
+constexpr int kRegionEdge = 1 << 10, kLongestRegion = 1 << 13;
 static_assert(kRegionEdge % kCubeEdge == 0);
 
 /// The region of a cube, with the voxels around it that rays read.
 VoxelRange regionOf(const VoxelRange& cube, glm::ivec3 dimensions) {
+  if (std::max({dimensions.x, dimensions.y, dimensions.z}) <= kLongestRegion) return {glm::ivec3(0), dimensions};
   const glm::ivec3 first = cube.first / kRegionEdge * kRegionEdge;
   return {glm::max(first - kCubeEdge, 0), first + glm::min(dimensions - first, kRegionEdge + kCubeEdge)};
 }
