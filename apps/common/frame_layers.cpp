@@ -18,18 +18,6 @@ bool mayEmit(const Scene& scene) {
   return scene.classification.emission || std::ranges::any_of(scene.added, emits);
 }
 
-void checkChannels(const SceneDescription& description, const Scene& scene, const FrameSettings& settings) {
-  const Parameter aov("aov", "channels");
-  const std::vector<ChannelStyle>& channels = description.classification.channels;
-  if (channels.empty()) fail(ErrorKind::Usage, "{} are layers of channels, and there are none: give {}", aov, Parameter("channel"));
-  if (description.input.volume.empty())
-    fail(ErrorKind::Usage, "{} reads the channels again, and an array has been read: draw it with one colour after the other", aov);
-  if (!scene.added.empty()) fail(ErrorKind::Usage, "{} is of one volume: leave out {}", aov, Parameter("add"));
-  if (!channels.front().emits && settings.lighting && settings.lighting->scattering != 1)
-    fail(ErrorKind::Usage, "light that is scattered more than once is no sum over channels: {} needs {} or {}", aov,
-         Parameter("scattering", "1"), Parameter("unlit"));
-}
-
 /// "dapi", or "channel0" where the name is no word that a layer may have.
 std::string layerName(const ChannelStyle& channel) {
   std::string name = channel.name;
@@ -60,7 +48,10 @@ std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, cons
 
 Image renderFrame(Renderer& renderer, const Device& device, const SceneDescription& description, const Scene& scene,
                   const FrameSettings& settings, const Aovs& aovs, const Progress& progress) {
-  if (aovs.channels) checkChannels(description, scene, settings);
+  checkLayers(description, aovs);
+  if (aovs.channels && description.input.volume.empty())
+    fail(ErrorKind::Usage, "{} reads the channels again, and an array has been read: draw it with one colour after the other",
+         Parameter("aov", "channels"));
   Image image = aovs.lights ? renderLightLayers(renderer, scene.camera, settings, mayEmit(scene), progress)
                             : renderer.render(scene.camera, settings, progress);
   if (!aovs.channels) return image;

@@ -101,6 +101,19 @@ SceneDescription SceneDescription::of(const std::string& volume) const {
   return result;
 }
 
+void checkLayers(const SceneDescription& scene, const Aovs& aovs) {
+  if (aovs.lights && scene.lighting.unlit)
+    fail(ErrorKind::Usage, "{} are layers of light, and there is none: leave {} out", Parameter("aov", "lights"), Parameter("unlit"));
+  if (!aovs.channels) return;
+  const Parameter aov("aov", "channels");
+  const std::vector<ChannelStyle>& channels = scene.classification.channels;
+  if (channels.empty()) fail(ErrorKind::Usage, "{} are layers of channels, and there are none: give {}", aov, Parameter("channel"));
+  if (!scene.added.empty()) fail(ErrorKind::Usage, "{} is of one volume: leave out {}", aov, Parameter("add"));
+  if (!channels.front().emits && !scene.lighting.unlit && scene.lighting.scattering != 1)
+    fail(ErrorKind::Usage, "light that is scattered more than once is no sum over channels: {} needs {} or {}", aov,
+         Parameter("scattering", "1"), Parameter("unlit"));
+}
+
 void SceneDescription::check() const {
   input.check();
   if (camera.holdout && method.drawing() == Draw::Splats) failHoldoutOfSplats();
@@ -116,6 +129,7 @@ void SceneDescription::check() const {
     fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("albedo-grid"), input.volume);
   classification.check(input);
   emission.check(input);
+  checkLayers(*this, output.aovs);
   camera.check();
   lighting.check();
 }

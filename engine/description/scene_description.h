@@ -329,6 +329,9 @@ struct SceneDescription {
   bool operator==(const SceneDescription&) const = default;
 };
 
+/// Fails for layers (Aovs::lights, Aovs::channels) of light or channels that the scene has not, or of light that is no sum over channels.
+void checkLayers(const SceneDescription& scene, const Aovs& aovs);
+
 /// A text of everything that a Renderer of the scene depends on, except for its volume: scenes with equal text can share one.
 std::string rendererText(const SceneDescription& description, const Scene& scene);
 

@@ -1,7 +1,5 @@
 // Images with layers, and volumes of labels and channels, as users draw them.
 
-#include <algorithm>
-
 #include "engine/image/image.h"
 #include "engine/image/metrics.h"
 #include "engine/volume/openvdb_trees.h"
@@ -28,30 +26,6 @@ void writeDyes(const std::filesystem::path& file) {
 }  // namespace
 
 using LayersTest = CommandTest;
-
-TEST_F(LayersTest, ChannelsAddUpToTheImageAndAreNamedAsTheyAre) {
-  writeDyes(folder / "dyes.vdb");
-  for (const std::string more : {"--channel dapi:blue:0,60:emission --channel gfp:#00ff00:emission --unlit",
-                                 "--channel dapi:blue --channel 1:red@2 --unlit", "--channel dapi --channel gfp:red --scattering 1"}) {
-    SCOPED_TRACE(more);
-    expectSuccess(run("render @dyes.vdb @a.exr --size 40x32 --float --quiet --aov channels " + more));
-    const Image image = readExr(folder / "a.exr");
-    const std::string second = more.find("1:red") != std::string::npos ? "channel1" : "gfp";
-    ASSERT_TRUE(image.channels.contains("dapi.B") && image.channels.contains(second + ".R"));
-    double worst = 0.0, most = 0.0;
-    for (std::size_t i = 0; i < image.pixels.size(); ++i)
-      for (int c = 0; c < 3; ++c) {
-        const std::string component(1, "RGB"[c]);
-        const float sum = image.channels.at("dapi." + component)[i] + image.channels.at(second + "." + component)[i];
-        worst = std::max(worst, double(std::abs(sum - image.pixels[i][c])));
-        most = std::max(most, double(sum));
-      }
-    EXPECT_LT(worst, 1e-6);
-    EXPECT_GT(most, 0.1);
-    expectSuccess(run("render @dyes.vdb @b.exr --size 40x32 --float --quiet " + more));
-    EXPECT_GT(compareImages(image, readExr(folder / "b.exr")).psnr, 50.0) << "colours of voxels have nine bits";
-  }
-}
 
 TEST_F(LayersTest, WhatHasNoLayersIsRefused) {
   writeDyes(folder / "dyes.vdb");

@@ -161,6 +161,28 @@ class RenderTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "channel"):
             freevoxels.render(dyes)
 
+    def test_layers_of_channels_add_up_to_the_image(self):
+        import pyopenvdb
+
+        with tempfile.TemporaryDirectory() as folder:
+            file = os.path.join(folder, "dyes.vdb")
+            grids = []
+            for name, values in (("dapi", blob()), ("gfp", np.roll(blob(), 3, axis=2))):
+                grids.append(pyopenvdb.FloatGrid())
+                grids[-1].copyFromArray(values)
+                grids[-1].name = name
+            pyopenvdb.write(file, grids)
+            for channels, second, more in ((["dapi:blue:0,1:emission", "gfp:#00ff00:emission"], "gfp", dict(unlit=True)),
+                                           (["dapi:blue", "1:red@2"], "channel1", dict(scattering=1))):
+                image, layers = freevoxels.render(file, channels=channels, aov="channels", size=(32, 24), **more)
+                self.assertEqual(set(layers), {"dapi", second})
+                np.testing.assert_allclose(sum(layers.values()), image[..., :3], atol=1e-6)
+                self.assertGreater(min(layer.max() for layer in layers.values()), 0.05)
+                plain = freevoxels.render(file, channels=channels, size=(32, 24), **more)
+                np.testing.assert_allclose(plain, image, atol=0.01, err_msg="colours of voxels have nine bits")
+            with self.assertRaisesRegex(ValueError, "scattering"):
+                freevoxels.render(file, channels=["dapi"], aov="channels")
+
     def test_layers_of_lights_add_up_to_the_image(self):
         cloud = freevoxels.Volume.open("procedural:cloud", resolution=12)
         lights = [{"direction": (1, 1, 0)}, {"direction": (-1, 0, 1), "color": (0, 0.5, 1)}]

@@ -64,7 +64,7 @@ class _Classification(TypedDict, total=False):
     transfer_function: _Path | Mapping[str, Any]
     classification: Literal["post", "pre"] | _Section
     labels: _Numbers
-    channel: str | Sequence_[str]
+    channels: str | Sequence_[str]
 
 class _Emission(TypedDict, total=False):
     emission: bool | float | Literal["none"] | _Section
