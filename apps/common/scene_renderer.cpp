@@ -208,7 +208,9 @@ Image SceneRenderer::drawImage(const KeywordOptions& options, std::optional<Turn
   const auto work = [&](Renderer& renderer, const Camera& camera, const FrameSettings& settings, const Progress& report) {
     Scene seen = scene_;
     seen.camera = camera;
-    Image image = renderFrame(renderer, *context_->device, options.scene, seen, settings, channels, report);
+    SceneDescription description = options.scene;
+    description.input = volume_->input();
+    Image image = renderFrame(renderer, *context_->device, description, seen, settings, channels, report);
     addChannels(image, channels, camera);
     return image;
   };

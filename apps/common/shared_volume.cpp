@@ -8,8 +8,9 @@
 
 namespace freevoxels {
 
-SharedVolume::SharedVolume(Volume volume)
-    : description_(std::make_shared<const Volume>(std::move(volume))), inMemory_(std::make_shared<const VolumeInMemory>(description_)) {}
+SharedVolume::SharedVolume(Volume volume, InputDescription input)
+    : input_(std::move(input)),
+      description_(std::make_shared<const Volume>(std::move(volume))), inMemory_(std::make_shared<const VolumeInMemory>(description_)) {}
 
 SharedVolume::SharedVolume(std::shared_ptr<const fvx::FvxFile> file, bool isRead)
     : isRead_(isRead), file_(std::move(file)), description_(std::make_shared<const Volume>(bakedOutline(*file_))) {}
@@ -33,7 +34,7 @@ std::shared_ptr<const VolumeSource> SharedVolume::source(const BakedNeed& need, 
 
 std::shared_ptr<const SharedVolume> sharedVolume(const SceneDescription& scene, bool isOfFilm, bool mayLackGrids, const Progress& progress) {
   if (auto baked = scene.input.baked()) return std::make_shared<const SharedVolume>(std::move(baked), isOfFilm);
-  return std::make_shared<const SharedVolume>(scene.readVolume(kMaxNumberedVoxels, 0, progress, mayLackGrids));
+  return std::make_shared<const SharedVolume>(scene.readVolume(kMaxNumberedVoxels, 0, progress, mayLackGrids), scene.input);
 }
 
 }  // namespace freevoxels

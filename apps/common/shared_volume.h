@@ -12,12 +12,15 @@ namespace freevoxels {
 /// otherwise, here, where the last one is kept for all renderers. Any thread may call the member functions.
 class SharedVolume {
  public:
-  explicit SharedVolume(Volume volume);
+  /// `input`: where the volume was read; empty for one of values in memory.
+  explicit SharedVolume(Volume volume, InputDescription input = {});
   /// `isRead`: whether levels are read as a whole, however they are classified.
   explicit SharedVolume(std::shared_ptr<const fvx::FvxFile> file, bool isRead = false);
 
   /// The volume; of a file its finest level, without the values.
   const Volume& describe() const { return *description_; }
+
+  const InputDescription& input() const { return input_; }
 
   /// What a frame of the scene needs, or the frames of a turn, as on the command line.
   BakedNeed needOf(const SceneDescription& scene, int frames) const;
@@ -25,6 +28,7 @@ class SharedVolume {
   std::shared_ptr<const VolumeSource> source(const BakedNeed& need, const Progress& progress) const;
 
  private:
+  const InputDescription input_;
   const bool isRead_ = false;
   const std::shared_ptr<const fvx::FvxFile> file_;  ///< null where the volume is of no baked file
   const std::shared_ptr<const Volume> description_;
