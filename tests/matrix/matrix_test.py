@@ -176,7 +176,8 @@ class MatrixTest(unittest.TestCase):
         listed = set(re.findall(r"^\| `([\w-]+)` \|", keys.read_text(), re.MULTILINE))
         self.assertGreater(len(listed), 50)
         used = {name for _, case in cases() for name in (*case["options"], *case["output"])}
-        implied = {"volume", "float", "lights", "volumes"}  # of the drivers; `lights` and `volumes` are `light` and `add` as files have them
+        # Of the drivers; `lights`, `channels` and `volumes` are `light`, `channel` and `add` as files have them.
+        implied = {"volume", "float", "lights", "channels", "volumes"}
         self.assertEqual(listed - used - implied, set())
 
     def test_command_line_and_module_agree(self):
