@@ -28,8 +28,8 @@ int behindEye(glm::ivec3 cell, const RaySource& eye) {
   return sum;
 }
 
-/// Positions on rays are counted from a place of their own in each region of this edge, in voxels, where the volume has an edge of more than
-/// kLongestRegion: from far away, single precision would not tell neighbouring positions apart.
+/// Positions on rays are counted from a place of their own in each region of this edge, in voxels, where the volume has an edge of more
+/// than kLongestRegion: from far away, single precision would not tell neighbouring positions apart.
 constexpr int kRegionEdge = 1 << 10, kLongestRegion = 1 << 13;
 static_assert(kRegionEdge % kCubeEdge == 0);
 
@@ -96,8 +96,8 @@ shader::GatherFrame CubeDrawing::State::latticeOf(const Camera& camera, const Fr
 shader::GatherFrame CubeDrawing::State::frameOf(const Frame& frame, const CubeLevel& cubeLevel, int level, const VoxelRange& region) const {
   const bool isWhole = region.extent() == cubeLevel.outline().dimensions;
   const DeviceVolume part = isWhole ? DeviceVolume() : partOf(cubeLevel, region, frame.classification);
-  shader::GatherFrame result = makeGatherFrame(isWhole ? cubeLevel.onDevice : part, frame.camera, frame.settings, {},
-                                               double(frame.lattice.endTransmittance));
+  shader::GatherFrame result =
+      makeGatherFrame(isWhole ? cubeLevel.onDevice : part, frame.camera, frame.settings, {}, double(frame.lattice.endTransmittance));
   result.samples = frame.lattice.samples;
   result.firstSample = frame.lattice.firstSample;
   result.pitch = frame.lattice.pitch;
@@ -160,10 +160,11 @@ void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel
     volume = cubeLevel.read(box);
   }
   const BuiltVolume built = buildVolume(device, volume, frame.classification, times, {}, BuiltLevels::Voxels);
-  const SurroundingLight light{
-      .dimensions = cubeLevel.outline().dimensions - origin, .first = box.first - origin, .codes = [&](int number, const GatherVolume& inBox) {
-        return codesOf(*cubeLevel.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
-      }};
+  const SurroundingLight light{.dimensions = cubeLevel.outline().dimensions - origin,
+                               .first = box.first - origin,
+                               .codes = [&](int number, const GatherVolume& inBox) {
+                                 return codesOf(*cubeLevel.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
+                               }};
   GatherVolume inBox(device, volume, frame.classification, built, times, &light);
   FrameConstants constants = makeFrameConstants(device, built.volume, table, frame.camera, frame.settings);
   constants.detail.finest = constants.detail.coarsest = 0;

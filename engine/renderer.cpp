@@ -30,7 +30,8 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
 [[noreturn]] void failUnnumbered(const Volume& outline, const std::string& whyNotCubes) {
   const glm::ivec3 box = outline.dimensions;
   fail(ErrorKind::OutOfMemory,
-       "a volume of {}x{}x{} voxels, {} of which have data, is drawn piece by piece alone, as no more than {} voxels can be numbered, and {}: "
+       "a volume of {}x{}x{} voxels, {} of which have data, is drawn piece by piece alone, as no more than {} voxels can be numbered, and "
+       "{}: "
        "draw it by gathering with other shadows, or crop or resample it",
        box.x, box.y, box.z, outline.activeVoxels, kMaxNumberedVoxels, whyNotCubes);
 }

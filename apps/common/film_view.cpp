@@ -32,7 +32,8 @@ Outline outlineOf(const SceneDescription& description, const std::string& input)
   } else if (const VolumeKind kind = scene.input.kind(); kind == VolumeKind::Scan) {
     const ScanHeader header = readScanHeader(input, scene.input.scanRequest(0));
     outline.voxels = header.samples();
-    if (!scene.input.isClipped()) outline.corners = boxOf(Volume{.dimensions = header.dimensions, .indexToWorld = header.indexToWorld}).points;
+    if (!scene.input.isClipped())
+      outline.corners = boxOf(Volume{.dimensions = header.dimensions, .indexToWorld = header.indexToWorld}).points;
   } else if (kind == VolumeKind::OpenVdb && scene.classification.channels.empty()) {
     const auto extent = extentOfVdb(input, scene.input.grid.value_or(""),
                                     {.temperature = scene.emission.grid(), .albedo = std::nullopt, .mayBeMissing = true});

@@ -10,7 +10,8 @@ namespace freevoxels {
 
 SharedVolume::SharedVolume(Volume volume, InputDescription input)
     : input_(std::move(input)),
-      description_(std::make_shared<const Volume>(std::move(volume))), inMemory_(std::make_shared<const VolumeInMemory>(description_)) {}
+      description_(std::make_shared<const Volume>(std::move(volume))),
+      inMemory_(std::make_shared<const VolumeInMemory>(description_)) {}
 
 SharedVolume::SharedVolume(std::shared_ptr<const fvx::FvxFile> file, bool isRead)
     : isRead_(isRead), file_(std::move(file)), description_(std::make_shared<const Volume>(bakedOutline(*file_))) {}

@@ -131,6 +131,9 @@ void saveImage(const Device& device, const DrawnImage& drawn, const std::string&
   const std::span<const std::string> files(&file, 1);
   const SceneDescription scene = sceneInto(drawn, files);
   checkScene(scene, files);
+  if (scene.output.aovs.hasLayers())
+    fail(ErrorKind::Usage,
+         "the image of a window has no layers, which are drawn one by one: copy the command that renders it, and run that");
   writeImages(downloadImage(device, *drawn.image), scene, files, drawn.scene, "render", optionsOf(scene.resolved(drawn.scene)),
               {{"device", drawn.device.name}, {"driver", drawn.device.driver}});
 }

@@ -42,7 +42,8 @@ glm::dvec3 highOf(const VoxelRange& box) {
 }  // namespace
 
 IslandShadows::Line IslandShadows::lineOf(const IslandRays& island, const FaceRays& fan, std::uint64_t ray) const {
-  const glm::dvec2 offset = fan.spacing * glm::dvec2(double(ray % std::uint64_t(fan.rayCount.x)), double(ray / std::uint64_t(fan.rayCount.x)));
+  const glm::dvec2 offset =
+      fan.spacing * glm::dvec2(double(ray % std::uint64_t(fan.rayCount.x)), double(ray / std::uint64_t(fan.rayCount.x)));
   const glm::dvec2 slope = fan.slope + offset * fan.convergence;
   Line line;
   line.direction[fan.axis] = fan.direction;
@@ -77,8 +78,8 @@ double IslandShadows::depthAlong(const IslandRays& other, const Line& line) cons
     const bool isRay = i >= 0.0 && j >= 0.0 && i < double(fan.rayCount.x) && j < double(fan.rayCount.y);
     return isRay ? double(other.depths[face][std::size_t(i) + std::size_t(fan.rayCount.x) * std::size_t(j)]) : 0.0;
   };
-  return std::lerp(std::lerp(at(low.x, low.y), at(low.x + 1.0, low.y), w.x), std::lerp(at(low.x, low.y + 1.0), at(low.x + 1.0, low.y + 1.0), w.x),
-                   w.y);
+  return std::lerp(std::lerp(at(low.x, low.y), at(low.x + 1.0, low.y), w.x),
+                   std::lerp(at(low.x, low.y + 1.0), at(low.x + 1.0, low.y + 1.0), w.x), w.y);
 }
 
 std::vector<float> IslandShadows::before(std::size_t island, int face) const {

@@ -109,8 +109,8 @@ RaySource fromBox(const RaySource& source, const VoxelRange& box) {
 class SweptLight::Sweep {
  public:
   /// `around` marks the bricks whose codes are kept. With `isIsland`, there are further boxes.
-  Sweep(SweptLight& light, const Device& device, const SourceLevel& level, const VoxelValues& values, const SparseGrid<std::uint8_t>& around,
-        const VoxelRange& box, const FaceRays& fan, int fanNumber, bool isIsland)
+  Sweep(SweptLight& light, const Device& device, const SourceLevel& level, const VoxelValues& values,
+        const SparseGrid<std::uint8_t>& around, const VoxelRange& box, const FaceRays& fan, int fanNumber, bool isIsland)
       : light_(light),
         device_(device),
         level_(level),
@@ -325,9 +325,7 @@ namespace {
 
 SweptLight::SweptLight(const Device& device, const SourceLevel& level, const RaySource& source, std::vector<StageTime>& times,
                        const Progress& progress) try
-    : source_(source),
-      records_((level.outline().dimensions + kEdge - 1) / kEdge),
-      codes_(std::filesystem::temp_directory_path()) {
+    : source_(source), records_((level.outline().dimensions + kEdge - 1) / kEdge), codes_(std::filesystem::temp_directory_path()) {
   const VoxelValues values(level);
   const SparseGrid<std::uint8_t> around = bricksAround(level);
   std::vector<IslandRays> islands;

@@ -144,8 +144,7 @@ Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& wh
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
   if (kindOfVolume == VolumeKind::Baked) return openClippedBaked(*this, maximumVoxels, progress);
   if (kindOfVolume == VolumeKind::Scan) {
-    for (const auto& [wanted, name] :
-         {std::pair(&what.more.temperature, "temperature-grid"), std::pair(&what.more.albedo, "albedo-grid")})
+    for (const auto& [wanted, name] : {std::pair(&what.more.temperature, "temperature-grid"), std::pair(&what.more.albedo, "albedo-grid")})
       if (*wanted && (*wanted)->isRequired)
         fail(ErrorKind::Usage, "{} is of OpenVDB files, and '{}' is a scan, which has one grid: leave it out", Parameter(name), volume);
     ScanRequest request = scanRequest(maximumVoxels, progress);

@@ -24,8 +24,8 @@ struct Range {
   }
 };
 
-/// Adds the values of the voxels of a brick that have data and lie between the planes `low` and `end` - 1 across z to the ranges of a plane of
-/// cells. The range of a cell includes `below` and `above` more voxels at its lower and upper sides.
+/// Adds the values of the voxels of a brick that have data and lie between the planes `low` and `end` - 1 across z to the ranges of a plane
+/// of cells. The range of a cell includes `below` and `above` more voxels at its lower and upper sides.
 void addBrick(std::vector<Range>& ranges, glm::ivec2 cells, const ScalarBricks& scalars, std::size_t number, glm::ivec2 planes, int edge,
               int below, int above) {
   const ScalarBricks::Brick& brick = scalars.bricks()[number];

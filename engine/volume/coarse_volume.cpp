@@ -47,7 +47,8 @@ std::vector<CoarseBrick> coarseBricksOf(const ScalarBricks& fine, const ScalarBr
 void fillCoarse(ScalarBricks::Brick& means, const CoarseBrick& part, const ScalarBricks& fine, int factor, WithoutData withoutData) {
   constexpr int n = ScalarBricks::kEdge;
   std::array<double, std::tuple_size_v<ScalarBricks::Brick>> sums{}, held{};
-  const glm::ivec3 begin = part.cell * n * factor, end = glm::ivec3(glm::min(glm::dvec3(begin) + double(n) * factor, glm::dvec3(fine.dimensions())));
+  const glm::ivec3 begin = part.cell * n * factor,
+                   end = glm::ivec3(glm::min(glm::dvec3(begin) + double(n) * factor, glm::dvec3(fine.dimensions())));
   for (const std::size_t brick : part.bricks) {
     const glm::ivec3 place = fine.firstVoxel(brick), low = glm::max(begin - place, 0), high = glm::min(end - place, n);
     for (glm::ivec3 v(0, 0, low.z); v.z < high.z; ++v.z)

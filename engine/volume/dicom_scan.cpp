@@ -190,7 +190,7 @@ class DicomScan : public ScanReader {
     checkPayload(slices_.front().file, header_.samples(), fs::file_size(slices_.front().file), true);
     header_.timeSteps = timeSteps;
     header_.format = places == 1 ? "DICOM" : fmt::format("DICOM series of {} slices", places);
-    header_.type = storedType(*io);
+    header_.type = sampleTypeOf(io->GetInternalComponentType()).value_or(SampleType::U16);
     if (io->GetRescaleSlope() != 1.0 || io->GetRescaleIntercept() != 0.0)
       header_.rescale = glm::dvec2(io->GetRescaleSlope(), io->GetRescaleIntercept());
     if (places == 1) return;
@@ -229,24 +229,6 @@ class DicomScan : public ScanReader {
     return io;
   }
 
-  static SampleType storedType(const itk::GDCMImageIO& io) {
-    using enum itk::IOComponentEnum;
-    switch (io.GetInternalComponentType()) {
-      case UCHAR:
-        return SampleType::U8;
-      case CHAR:
-        return SampleType::I8;
-      case SHORT:
-        return SampleType::I16;
-      case UINT:
-        return SampleType::U32;
-      case INT:
-        return SampleType::I32;
-      default:
-        return SampleType::U16;
-    }
-  }
-
   static void readFile(const fs::path& file, SampleBlock block, const SampleSink& sink) {
     const auto io = open(file);
     const ScanHeader header = headerOf(file, *io);
@@ -255,10 +237,7 @@ class DicomScan : public ScanReader {
       fail(ErrorKind::Input, "'{}' has {} x {} pixels, and the first slice of the series {} x {}: leave it out", file.string(), size.x,
            size.y, block.extent.x, block.extent.y);
     checkPayload(file, header.samples(), fs::file_size(file), true);
-    const unsigned dimensions = io->GetNumberOfDimensions();
-    itk::ImageIORegion region(dimensions);
-    for (unsigned axis = 0; axis < dimensions; ++axis) region.SetSize(axis, io->GetDimensions(axis));
-    io->SetIORegion(region);
+    wantAll(*io);
     const auto buffer = std::make_unique_for_overwrite<std::byte[]>(header.samples() * bytesOf(header.type));
     quietItk(file, [&] { io->Read(buffer.get()); });
     block.samples = buffer.get();

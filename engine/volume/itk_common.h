@@ -37,10 +37,10 @@ void quietItk(const std::filesystem::path& file, const Work& work) {
   }
 }
 
-/// The type of the values that ITK hands out; nothing for one that no scan has.
-inline std::optional<SampleType> sampleTypeOf(const itk::ImageIOBase& io) {
+/// The type of values that ITK calls so; nothing for one that no scan has.
+inline std::optional<SampleType> sampleTypeOf(itk::IOComponentEnum type) {
   using enum itk::IOComponentEnum;
-  switch (io.GetComponentType()) {
+  switch (type) {
     case UCHAR:
       return SampleType::U8;
     case CHAR:
@@ -70,6 +70,14 @@ inline std::optional<SampleType> sampleTypeOf(const itk::ImageIOBase& io) {
   }
 }
 
+/// Has the whole image read.
+inline void wantAll(itk::ImageIOBase& io) {
+  const unsigned dimensions = io.GetNumberOfDimensions();
+  itk::ImageIORegion region(dimensions);
+  for (unsigned axis = 0; axis < dimensions; ++axis) region.SetSize(axis, io.GetDimensions(axis));
+  io.SetIORegion(region);
+}
+
 inline std::string textIn(const itk::MetaDataDictionary& dictionary, const std::string& key) {
   std::string text;
   itk::ExposeMetaData<std::string>(dictionary, key, text);
@@ -88,7 +96,7 @@ inline ScanHeader headerOf(const std::filesystem::path& file, const itk::ImageIO
   if (io.GetNumberOfComponents() != 1)
     fail(ErrorKind::Input, "'{}' has {} numbers a voxel ({}), and scans have one: write one of them, or their magnitude, into a file",
          file.string(), io.GetNumberOfComponents(), itk::ImageIOBase::GetPixelTypeAsString(io.GetPixelType()));
-  const std::optional<SampleType> type = sampleTypeOf(io);
+  const std::optional<SampleType> type = sampleTypeOf(io.GetComponentType());
   if (!type) fail(ErrorKind::Input, "'{}' has values of a type that no scan has: convert them to whole numbers or floats", file.string());
   ScanHeader header{.type = *type};
   glm::i64vec3 dimensions(1);

@@ -156,7 +156,8 @@ Payload checkMetaHeader(const std::filesystem::path& file) {
   if (!values["ElementType"].starts_with("MET_")) failDamaged(file, "its ElementType is none of MetaImage");
   std::istringstream sizes(values["DimSize"]);
   const auto given = std::distance(std::istream_iterator<std::int64_t>(sizes), std::istream_iterator<std::int64_t>());
-  if (std::to_string(given) != values["NDims"]) failDamaged(file, fmt::format("its DimSize has {} numbers, and its NDims is {}", given, values["NDims"]));
+  if (std::to_string(given) != values["NDims"])
+    failDamaged(file, fmt::format("its DimSize has {} numbers, and its NDims is {}", given, values["NDims"]));
   Payload payload{.isCompressed = values["CompressedData"].starts_with('T') || values["CompressedData"].starts_with('1')};
   std::string where = values["ElementDataFile"];
   while (!where.empty() && std::isspace(static_cast<unsigned char>(where.back())) != 0) where.pop_back();
@@ -177,8 +178,9 @@ void checkNiftiHeader(const std::filesystem::path& file) {
   const bool isSwapped = start[0] == 0;
   const int type = std::uint8_t(start[kType + (isSwapped ? 1 : 0)]) | std::uint8_t(start[kType + (isSwapped ? 0 : 1)]) << 8;
   if (!niftiType(type))
-    fail(ErrorKind::Input, "'{}' has values of NIfTI's type {}, and scans have one whole number or float of up to 64 bits a voxel: convert it",
-         file.string(), type);
+    fail(ErrorKind::Input,
+         "'{}' has values of NIfTI's type {}, and scans have one whole number or float of up to 64 bits a voxel: convert it", file.string(),
+         type);
 }
 
 class ItkScan : public ScanReader {
@@ -207,10 +209,7 @@ class ItkScan : public ScanReader {
   void read(int timeStep, const SampleSink& sink, const Progress& progress) override {
     if (format_ == ItkFormat::Nifti) return readNiftiValues(path_, header_, timeStep, sink, progress);
     if (progress) progress("reading the scan", 0.0);
-    const unsigned dimensions = io_->GetNumberOfDimensions();
-    itk::ImageIORegion region(dimensions);
-    for (unsigned axis = 0; axis < dimensions; ++axis) region.SetSize(axis, io_->GetDimensions(axis));
-    io_->SetIORegion(region);
+    wantAll(*io_);
     const auto buffer = std::make_unique_for_overwrite<std::byte[]>(bytesToRead());
     readWhole({buffer.get(), bytesToRead()});
     const std::uint64_t step = header_.samples() * bytesOf(header_.type) * std::uint64_t(timeStep);

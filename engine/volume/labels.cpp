@@ -30,10 +30,15 @@ bool isInBox(glm::ivec3 voxel, glm::ivec3 dimensions) {
   return glm::all(glm::greaterThanEqual(voxel, glm::ivec3(0))) && glm::all(glm::lessThan(voxel, dimensions));
 }
 
+/// Voxels around a voxel, along each axis, of which its density is a mean.
+constexpr int kMeanReach = 2;
+
 /// A label as it is drawn: not at all with density kInactiveVoxel.
 struct Look {
   float density = kInactiveVoxel;
   glm::vec3 color{kInactiveVoxel};
+
+  bool operator==(const Look&) const = default;
 };
 
 Look lookOf(const Labels& labels, std::int64_t label) {
@@ -59,7 +64,7 @@ class Neighbourhood {
           const std::int64_t label = scalar == kInactiveVoxel ? 0 : labelOf(scalar);
           if (label != std::exchange(last, label)) look = lookOf(labels, label);
           looks_[index] = look;
-          isEmpty_ &= look.density == kInactiveVoxel;
+          isUniform_ &= look == looks_.front();
         }
   }
 
@@ -67,8 +72,8 @@ class Neighbourhood {
   /// that are thinner than a voxel of the mean keep half of their density.
   Look at(glm::ivec3 place) const {
     constexpr std::array<float, 2 * kReach + 1> kWeights{1.0f / 16, 4.0f / 16, 6.0f / 16, 4.0f / 16, 1.0f / 16};
-    if (isEmpty_) return {};
     const Look& own = lookAt(place);
+    if (isUniform_) return own;
     float mean = 0.0f;
     int nearest = std::numeric_limits<int>::max();
     Look result;
@@ -86,19 +91,30 @@ class Neighbourhood {
   }
 
  private:
-  static constexpr int kReach = 2, kEnd = ScalarBricks::kEdge + kReach, kEdge = ScalarBricks::kEdge + 2 * kReach;
+  static constexpr int kReach = kMeanReach, kEnd = ScalarBricks::kEdge + kReach, kEdge = ScalarBricks::kEdge + 2 * kReach;
   const Look& lookAt(glm::ivec3 place) const {
     const glm::ivec3 at = place + kReach;
     return looks_[std::size_t(at.x + kEdge * (at.y + kEdge * at.z))];
   }
 
   std::array<Look, std::size_t(kEdge) * kEdge * kEdge> looks_;
-  bool isEmpty_ = true;
+  bool isUniform_ = true;  ///< as inside of a part, or where there is none
 };
 
-/// Makes the brick of a cell and those beside it, as far as there are cells.
-void makeBricksAround(ScalarBricks& bricks, glm::ivec3 cell) {
-  const glm::ivec3 first = glm::max(cell - 1, 0), last = glm::min(cell + 1, bricks.cells() - 1);
+/// Makes the bricks that means of the values of a brick reach, as far as there are cells.
+void makeBricksAround(ScalarBricks& bricks, const ScalarBricks& values, std::size_t brick, const Labels& labels) {
+  constexpr int kEdge = ScalarBricks::kEdge;
+  glm::ivec3 low(kEdge), high(-1);  // of the voxels with labels that are shown
+  for (std::size_t i = 0; i < values.bricks()[brick].size(); ++i) {
+    const float value = values.bricks()[brick][i];
+    if (value == kInactiveVoxel || !labels.shows(labelOf(value))) continue;
+    low = glm::min(low, ScalarBricks::placeInBrick(i));
+    high = glm::max(high, ScalarBricks::placeInBrick(i));
+  }
+  if (high.x < 0) return;
+  const glm::ivec3 cell = values.cell(brick), reach(kMeanReach);
+  const glm::ivec3 first = glm::max(cell - glm::ivec3(glm::lessThan(low, reach)), 0);
+  const glm::ivec3 last = glm::min(cell + glm::ivec3(glm::greaterThanEqual(high, kEdge - reach)), bricks.cells() - 1);
   for (glm::ivec3 c = first; c.z <= last.z; ++c.z)
     for (c.y = first.y; c.y <= last.y; ++c.y)
       for (c.x = first.x; c.x <= last.x; ++c.x) bricks.makeBrick(c);
@@ -121,7 +137,7 @@ std::int64_t labelOf(float scalar) {
 void showLabels(Volume& volume, const Labels& labels) {
   const ScalarBricks values = std::exchange(volume.scalars, {});
   ScalarBricks densities(volume.dimensions, values.corner());
-  for (std::size_t brick = 0; brick < values.bricks().size(); ++brick) makeBricksAround(densities, values.cell(brick));
+  for (std::size_t brick = 0; brick < values.bricks().size(); ++brick) makeBricksAround(densities, values, brick, labels);
   AlbedoGrid colors{.name = "labels", .values = {}, .isMade = true};
   colors.values.fill(densities);
   tbb::parallel_for(std::size_t(0), densities.bricks().size(), [&](std::size_t brick) {

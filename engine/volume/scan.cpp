@@ -89,8 +89,8 @@ Classes classesOf(std::span<const double> weights) {
   return classes;
 }
 
-/// Adds the values of the active voxels of a column of bricks along x that are on the six sides of the box; those at the ends of rows, where
-/// these do not reach the sides. `column` has the numbers of the bricks that exist, in ascending order.
+/// Adds the values of the active voxels of a column of bricks along x that are on the six sides of the box; those at the ends of rows,
+/// where these do not reach the sides. `column` has the numbers of the bricks that exist, in ascending order.
 void addValuesOnSides(const ScalarBricks& scalars, std::span<const std::size_t> column, std::vector<float>& values) {
   constexpr int n = ScalarBricks::kEdge;
   const glm::ivec3 last = scalars.dimensions() - 1, place = scalars.firstVoxel(column.front());
@@ -101,7 +101,8 @@ void addValuesOnSides(const ScalarBricks& scalars, std::span<const std::size_t> 
       for (const std::size_t brick : column) {
         const int first = scalars.firstVoxel(brick).x;
         for (int x = std::max(-first, 0); x < n && first + x <= last.x; ++x)
-          if (const float value = scalars.bricks()[brick][ScalarBricks::indexInBrick({x, y, z})]; value != kInactiveVoxel) row.push_back(value);
+          if (const float value = scalars.bricks()[brick][ScalarBricks::indexInBrick({x, y, z})]; value != kInactiveVoxel)
+            row.push_back(value);
       }
       const bool isOnSide = place.z + z == 0 || place.z + z == last.z || place.y + y == 0 || place.y + y == last.y;
       if (isOnSide)

@@ -63,11 +63,12 @@ void warnOfStrayVoxels(Volume& volume) {
   const std::optional<StrayVoxels> stray = strayVoxels(volume);
   if (!stray || stray->count == 0) return;
   const glm::ivec3 low = stray->others.first, high = stray->others.last, n = volume.dimensions;
-  volume.warnings.push_back(fmt::format(
-      "{} of the {} voxels of {} lie far from all others, in a box of {}x{}x{} voxels, so that an image of all shows the others small: {} leaves "
-      "them out",
-      stray->count, volume.activeVoxels, volume.source, n.x, n.y, n.z,
-      Parameter("clip-box", fmt::format("{},{},{},{},{},{}", low.x, low.y, low.z, high.x, high.y, high.z))));
+  volume.warnings.push_back(
+      fmt::format("{} of the {} voxels of {} lie far from all others, in a box of {}x{}x{} voxels, so that an image of all shows the "
+                  "others small: {} leaves "
+                  "them out",
+                  stray->count, volume.activeVoxels, volume.source, n.x, n.y, n.z,
+                  Parameter("clip-box", fmt::format("{},{},{},{},{},{}", low.x, low.y, low.z, high.x, high.y, high.z))));
 }
 
 }  // namespace freevoxels

@@ -14,8 +14,8 @@ struct StrayVoxels {
   VoxelBox others;          ///< the box of all other voxels, in whole bricks or up to the volume's box
 };
 
-/// Nothing unless a box of at least 0.998 of the voxels with data is so much shorter than the volume's that it fills less than a sixteenth of
-/// an image of all.
+/// Nothing unless a box of at least 0.998 of the voxels with data is so much shorter than the volume's that it fills less than a sixteenth
+/// of an image of all.
 std::optional<StrayVoxels> strayVoxels(const Volume& volume);
 
 /// Warns of them, with the clip box that leaves them out.

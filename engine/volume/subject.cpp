@@ -49,8 +49,8 @@ ContentCells contentCellsOf(glm::ivec3 dimensions, const Volume& sample, const C
 
 namespace {
 
-/// The part of a volume in whose cells something is seen, where its box has more voxels than can be numbered and the part is so small in it that
-/// the cells do not show where it is; nothing otherwise.
+/// The part of a volume in whose cells something is seen, where its box has more voxels than can be numbered and the part is so small in it
+/// that the cells do not show where it is; nothing otherwise.
 std::optional<Volume> smallContent(const ContentCells& content, const Volume& volume) {
   constexpr int kSmall = 16;
   if (volume.voxelCount() <= std::size_t(std::numeric_limits<std::int32_t>::max())) return {};

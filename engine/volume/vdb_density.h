@@ -142,8 +142,8 @@ template <typename ToDensity>
 double occupiedVoxels(const openvdb::FloatTree& tree, const std::vector<const openvdb::FloatTree::LeafNodeType*>& leaves,
                       const ToDensity& toDensity) {
   using Leaf = openvdb::FloatTree::LeafNodeType;
-  double voxels = double(Leaf::NUM_VOXELS) *
-                  double(std::ranges::count_if(leaves, [&](const Leaf* leaf) { return holdsData(*leaf, toDensity); }));
+  double voxels =
+      double(Leaf::NUM_VOXELS) * double(std::ranges::count_if(leaves, [&](const Leaf* leaf) { return holdsData(*leaf, toDensity); }));
   visitTiles(tree, toDensity, [&](const openvdb::CoordBBox& box, float) {
     const glm::i64vec3 extent = extentOf(box);
     voxels += double(extent.x) * double(extent.y) * double(extent.z);

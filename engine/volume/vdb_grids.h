@@ -92,6 +92,9 @@ class VdbFile {
   std::vector<openvdb::GridBase::Ptr> all_;       ///< in OpenVDB's order, once one was read that has a place
 };
 
+/// Text from a file in a form that fits into a sentence: one printable line of limited length.
+std::string oneLine(const std::string& text);
+
 /// Whether the grid has real numbers, whole numbers (of which booleans and masks are 0 and 1), or colours, by OpenVDB's names of types.
 bool isScalar(const VdbFile::Entry& entry);
 bool isWhole(const VdbFile::Entry& entry);

@@ -36,7 +36,8 @@ void checkSize(const Size& size, std::uint64_t maximumVoxels, const std::string&
   if (size.fits(maximumVoxels)) return;
   const glm::i64vec3 box = size.box;
   fail(ErrorKind::OutOfMemory,
-       "{} is too large: {:.0f} voxels of its {} x {} x {} box are occupied, and at most {} of them and boxes of {} voxels along an edge are "
+       "{} is too large: {:.0f} voxels of its {} x {} x {} box are occupied, and at most {} of them and boxes of {} voxels along an edge "
+       "are "
        "possible here; draw a part of it with {}, or resample the volume",
        source, size.occupied, box.x, box.y, box.z, maximumVoxels, kLongestReadEdge, Parameter("clip-box"));
 }

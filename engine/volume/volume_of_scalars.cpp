@@ -33,8 +33,8 @@ glm::dmat4 latticeTransform(const glm::dvec3& spacing, const glm::dvec3& origin)
   return glm::scale(glm::translate(glm::dmat4(1.0), origin), spacing);
 }
 
-Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, const std::optional<NoData>& noData,
-                       const std::string& source, const Labels* labels) {
+Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, const std::optional<NoData>& noData, const std::string& source,
+                       const Labels* labels) {
   checkTransform(indexToWorld, source);
   Volume volume{.source = source, .dimensions = scalars.dimensions(), .indexToWorld = indexToWorld, .scalars = std::move(scalars)};
   normaliseWorld(volume);

@@ -23,7 +23,8 @@ ScalarBricks part(const ScalarBricks& values, const VoxelRange& box) {
             if (values.brickAt(cell) != nullptr) return true;
       return false;
     };
-    return ScalarBricks::make(box.extent(), [&](glm::ivec3 voxel) { return values.at(box.first + voxel); }, mayHoldData);
+    return ScalarBricks::make(
+        box.extent(), [&](glm::ivec3 voxel) { return values.at(box.first + voxel); }, mayHoldData);
   }
   ScalarBricks result(box.extent());
   const glm::ivec3 first = box.first / kEdge, cells = result.cells();

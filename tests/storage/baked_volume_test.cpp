@@ -352,7 +352,8 @@ TEST(BakedVolume, VoxelsFarApartAreBakedAndReadBack) {
 
 TEST(BakedVolume, AVolumeThatIsTooLongIsRefused) {
   const test::TemporaryFolder folder;
-  const StreamedVolume volume{.outline = {.source = "long", .dimensions = {fvx::kLongestEdge + 1, 1, 1}}, .content = {.cells = Cells(glm::ivec3(1))}};
+  const StreamedVolume volume{.outline = {.source = "long", .dimensions = {fvx::kLongestEdge + 1, 1, 1}},
+                              .content = {.cells = Cells(glm::ivec3(1))}};
   test::expectRefusal([&] { bakeStreamed(folder / "a.fvx", volume, kDense, {}); }, ErrorKind::Input, {"long", "67108865", "67108864"});
   EXPECT_EQ(folder.fileCount(), 0u);
 }
