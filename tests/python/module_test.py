@@ -161,6 +161,7 @@ class RenderTest(unittest.TestCase):
         with self.assertRaisesRegex(ValueError, "channel"):
             freevoxels.render(dyes)
 
+    @unittest.skipUnless(importlib.util.find_spec("pyopenvdb"), "pyopenvdb is not there for this NumPy")
     def test_layers_of_channels_add_up_to_the_image(self):
         import pyopenvdb
 
