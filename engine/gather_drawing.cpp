@@ -11,11 +11,12 @@
 
 namespace freevoxels {
 
-void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, bool holdout, const Progress& progress) {
+void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress) {
   try {
     if (!volume_) volume_.emplace(scene_.device, scene_.hostVolume, scene_.classification, scene_.built, scene_.frameTimes);
     volume_->prepare(shading);
-    GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0, holdout);
+    GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0, settings.holdout != nullptr,
+                             settings.isProjected());
     Commands commands(scene_.device);
     volume_->record(commands, shading);
     if (!commands.empty()) scene_.submit(commands, progress);
@@ -55,7 +56,7 @@ GatherDrawing::Frame GatherDrawing::prepare(const Camera& camera, const FrameSet
                  .scattered = lighting != nullptr ? scene_.scattered() : nullptr,
                  .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
                  .keptQuadBytes = planKeptQuadBytes(scene_.device)},
-                settings.holdout != nullptr, progress);
+                settings, progress);
   if (!pass_) pass_.emplace(scene_.device);
   frame.lattice.holdout = pass_->holdOut(settings.holdout);
   volume_->describe(frame.lattice);

@@ -39,7 +39,7 @@ class GatherDrawing {
   bool hasPass() const { return pass_.has_value(); }
 
  private:
-  void prepareVolume(const GatherVolume::Shading& shading, bool holdout, const Progress& progress);
+  void prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress);
 
   DeviceScene& scene_;
   std::optional<GatherVolume> volume_;

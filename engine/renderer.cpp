@@ -47,13 +47,6 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
        Parameter("memory-limit"), whyNotCubes);
 }
 
-void checkFrame(const Camera& camera, const FrameSettings& settings) {
-  checkCamera(camera);
-  if (!settings.holdout) return;
-  if (!settings.gathers()) failHoldoutOfSplats();
-  checkHoldoutSize(*settings.holdout, settings.size);
-}
-
 }  // namespace
 
 Renderer::Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
@@ -154,8 +147,24 @@ auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& prog
   return drawCubes(cubes(), settings);
 }
 
+void Renderer::check(const Camera& camera, const FrameSettings& settings) const {
+  checkCamera(camera);
+  if (settings.holdout) {
+    if (!settings.gathers()) failHoldoutOfSplats();
+    checkHoldoutSize(*settings.holdout, settings.size);
+  }
+  if (!settings.isProjected()) return;
+  FV_CHECK_EQ(settings.lod, 0.0f);
+  if (merged_)
+    fail(ErrorKind::Usage, "{} projects the values of one volume, and there are several: draw each for itself", Parameter("mode"));
+  if (!classification_.isPost(source_->outline()))
+    fail(ErrorKind::Usage, "{} needs values that a transfer function is applied to after interpolation, and {} has none", Parameter("mode"),
+         source_->outline().source);
+  if (settings.lighting) fail(ErrorKind::Usage, "{} shows values, on which no light shines: leave the lights out", Parameter("mode"));
+}
+
 Image Renderer::render(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
-  checkFrame(camera, settings);
+  check(camera, settings);
   if (merged_) return downloadImage(device_, *merged_->draw(camera, settings, progress));
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
@@ -177,7 +186,7 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
 
 std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                              const Progress& progress) {
-  checkFrame(camera, settings);
+  check(camera, settings);
   if (merged_) return merged_->draw(camera, settings, progress);
   const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
     Commands commands(device_);
@@ -193,7 +202,7 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   FV_CHECK_EQ(wanted.isSorted(), false);
   FV_CHECK_LT(part.index, part.count);
   FV_CHECK_LE(part.count, kShares);
-  checkFrame(camera, wanted);
+  check(camera, wanted);
   if (merged_) return merged_->shares(camera, wanted, part, progress);
   FrameSettings settings = wanted;
   if (!settings.gathers()) settings.splats().cullThreshold = 0.0f;  // what hides a splat may be another part's

@@ -93,6 +93,7 @@ class Renderer {
   CubeDrawing& cubes();
   template <typename DrawWhole, typename DrawCubes>
   auto draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole, const DrawCubes& drawCubes);
+  void check(const Camera& camera, const FrameSettings& settings) const;
   Error withNeed(const Error& error, const FrameSettings& settings, const std::string& whyNotCubes) const;
 
   const Device& device_;

@@ -8,7 +8,7 @@
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #define TRANSFER_TABLE_BINDING 7
-#include "gather_scalars.glsl"
+#include "gather_projection.glsl"
 
 // The number of groups of ray.group slices, starting at `slice` in the ray's direction, that are empty; 0 if
 // the first may not be.
@@ -99,13 +99,16 @@ void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, i
 // Branches on constants are nested, so that the compiler removes them.
 void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final,
              bool scalars) {
-  if (kScalars) {
+  if (kScalars && !kProjected) {
     if (scalars) {
       addNextScalars(sums, last, slice, left, level, ray, rest, final);
       return;
     }
   }
-  addBlocks(sums, last, level, ray, slice, slice != final + int(ray.direction));
+  if (kProjected)
+    addProjected(sums, last, level, ray, slice, slice != final + int(ray.direction));
+  else
+    addBlocks(sums, last, level, ray, slice, slice != final + int(ray.direction));
   slice += int(ray.direction);
   --left;
 }
@@ -217,6 +220,22 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   distanceSum += ray.perSlice * sums.distance;
 }
 
+// Stores the sums of a sample whose scalars are projected: between cubes what was projected so far.
+void storeProjected(int sampleIndex, Projected all) {
+#ifdef CONTINUES_SUMS
+  const vec3 before = imageLoad(colorEnergy, sampleIndex).rgb;
+  joinProjected(all, Projected(before.x, before.y, before.z, imageLoad(distances, sampleIndex).x));
+  if (frame.cube.isLast == 0) {
+    imageStore(colorEnergy, sampleIndex, vec4(all.largest, all.sum, all.coverage, 0.0));
+    imageStore(distances, sampleIndex, vec4(all.distance));
+    return;
+  }
+#endif
+  float distance;
+  imageStore(colorEnergy, sampleIndex, colorOf(all, distance));
+  imageStore(distances, sampleIndex, vec4(distance));
+}
+
 void main() {
   ivec2 index = sampleOfThread();
   if (any(greaterThanEqual(index, kCube ? frame.cube.extent : frame.seenExtent))) return;
@@ -242,6 +261,13 @@ void main() {
   float distanceSum = 0.0;  // sum of e times world distance from the eye plane
   const int sampleIndex = index.x + index.y * frame.samples.x;
   vec3 colorBefore = vec3(0.0);
+  if (kProjected) {
+    marchLevel(sums, distanceSum, sampleRay, 0, true);
+    Projected all = projectedOf(sums);
+    all.distance = distanceSum;
+    storeProjected(sampleIndex, all);
+    return;
+  }
 #ifdef CONTINUES_SUMS
   const vec4 before = imageLoad(colorEnergy, sampleIndex);
   colorBefore = before.rgb;

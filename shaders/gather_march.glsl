@@ -9,6 +9,7 @@ const bool kScalars = SCALARS;    // whether voxels are classified after interpo
 const bool kSampled = SAMPLED;    // whether light is evaluated at samples
 const bool kSurfaces = SURFACES;  // whether they then may be surfaces
 const bool kCube = CUBE;      // whether only a cube of the volume is marched, behind those that were marched before (GatherCube)
+const bool kProjected = PROJECTED;  // whether scalars are projected, and not marched as a medium; then kScalars is set alone, or with kCube
 const bool kMerged = MERGED;  // whether other volumes are on the way of the rays that are marched: what is met is added up in slabs
 
 layout(constant_id = 0) const int kAxis = 2;          // rays with another axis are marched by other dispatches

@@ -99,7 +99,7 @@ class Survey {
   explicit Survey(const SceneDescription& description) : description_(description) {}
 
   void add(const std::string& input, std::shared_ptr<Volume> volume) {
-    const bool burns = volume->temperature && description_.emission.mayShine(*volume->temperature);
+    const bool burns = volume->temperature && !description_.method.isProjected() && description_.emission.mayShine(*volume->temperature);
     const double mass = massOf(*volume), power = burns ? powerOf(*volume) : 0.0;
     SceneDescription own = description_;
     if (!volume->temperature && !volume->classification) own.emission = {.emission = false};
@@ -124,8 +124,9 @@ class Survey {
     FilmView view{.scene = {.volume = largest_.volume}, .largest = largest_.input, .brightest = ""};
     Classification& classification = view.scene.classification;
     const std::optional<Emission> emission = volume.classification ? std::nullopt : emissionScales();
-    classification = volume.classification ? description_.resolveClassification(volume)
-                                           : description_.classification.resolve(volume, emission.has_value());
+    classification = volume.classification || description_.method.isProjected()
+                         ? description_.resolveClassification(volume)
+                         : description_.classification.resolve(volume, emission.has_value());
     if (emission) {
       view.brightest = brightest_.input;
       classification.emission = emission;
@@ -137,7 +138,7 @@ class Survey {
                             .resolve(
                                 volume.up, [&] { return subjectOf(corners); }, 1)
                             .front();
-    view.scene.lighting = description_.lighting.resolve(volume, classification, view.scene.camera);
+    view.scene.lighting = description_.resolveLighting(volume, classification, view.scene.camera);
     forgetVoxels();
     return view;
   }

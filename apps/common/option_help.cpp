@@ -53,6 +53,9 @@ const std::vector<OptionHelp> kVolumeHelp{
      "Grid of vectors of the file with the colours, linear, 0..1; none for none [Cd, color or a like name, if there is one]"},
     {"transfer-function",
      "Colour and opacity by scalar, instead of the above: a file, or JSON that begins with { [for scans one made from the histogram]"},
+    {"iso",
+     "Draws the surface in front of all values from VALUE on, in place of a transfer function, with its colour: R,G,B, "
+     "linear, #rrggbb or a basic CSS name [0.8,0.8,0.8]"},
     {"channel",
      "Draws several grids of the file together, each by a channel option: its name or number from 0, its colour, a weight of its density, "
      "the "
@@ -118,6 +121,10 @@ const std::vector<OptionHelp> kLightHelp{
     {"surface-share", "Part of the light that surfaces reflect like surfaces, 0 to 1; the rest is scattered like fog [1]", true}};
 
 const std::vector<OptionHelp> kMethodHelp{
+    {"mode",
+     "What a ray shows: the volume as a medium, or, without light, its values: the largest on its way (mip, maximum intensity projection) "
+     "or their mean (average), with colour and opacity of the transfer function [volume; of mip and average that is a white ramp]",
+     true},
     {"composite",
      "How splats become pixels: colours mixed by the table with exact opacity, the paper's plain sum, or back-to-front alpha "
      "blending for comparison [normalised]",

@@ -208,7 +208,8 @@ void logRemarks(const SceneDescription& description, const Scene& scene) {
   const Volume& volume = *scene.volume;
   logWarnings(volume, !scene.classification.transferFunction);
   logAssumptions(volume);
-  if (scene.classification.transferFunction && !description.classification.transferFunction && !volume.classification)
+  const bool isChosen = description.classification.transferFunction || description.classification.iso || description.method.isProjected();
+  if (scene.classification.transferFunction && !isChosen && !volume.classification)
     spdlog::info(
         "{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
         "show densities with --density-scale",

@@ -34,6 +34,7 @@ void OracleCommand::add(CLI::App& app) {
   CLI::App* command =
       app.add_subcommand("oracle", "Draw a reference image by ray marching in double precision, for comparison");
   scene_.add(*command);
+  scene_.addFields(*command, {"mode"});
   messages_.add(*command);
   command->footer(kOracleExamples);
   command->callback([this] { run(); });
@@ -88,6 +89,7 @@ void OracleCommand::draw() const {
   const OracleSettings settings{.size = description.camera.size,
                                 .depth = description.output.aovs.needDepth(),
                                 .lighting = scene.lighting,
+                                .projection = description.method.mode.value_or(IntensityProjection::None),
                                 .holdout = description.camera.readHoldout()};
   std::vector<PlacedMedium> volumes{{scene.volume.get(), &scene.classification}};
   for (const SceneVolume& added : scene.added) volumes.push_back({known(added.source).get(), &added.classification});

@@ -10,6 +10,7 @@
 #include "apps/view/transfer_presets.h"
 #include "apps/view/ui_painter.h"
 #include "engine/core/atomic_file.h"
+#include "engine/description/scene_fields.h"
 #include "engine/description/text_values.h"
 #include "engine/image/image.h"
 
@@ -74,6 +75,11 @@ const Texture* PresetImages::of(std::size_t preset, const std::shared_ptr<const 
 
 void ClassificationPanel::draw(ViewState& state) {
   ImGui::PushID("classification");
+  if (choose("Mode", kModeWords, state.scene.method.mode, IntensityProjection::None)) {
+    if (!state.scene.method.isProjected()) state.scene.method.mode.reset();
+    state.changed = true;
+  }
+  hint("The volume as a medium; or the largest values along rays, or their mean", "--mode");
   drawKind(state);
   if (state.scene.classification.transferFunction)
     drawTransferFunction(state);

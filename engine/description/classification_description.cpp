@@ -1,3 +1,5 @@
+#include <algorithm>
+
 #include "engine/core/error.h"
 #include "engine/description/scene_description.h"
 #include "engine/description/text_values.h"
@@ -7,13 +9,25 @@ namespace freevoxels {
 
 namespace {
 
+/// Too little for a display to show.
+constexpr float kInvisibleOpacity = 1e-6f;
+
+/// Changes a function so that values in which nothing is seen count in a mean: transparent voxels are not stored, and a function's table
+/// resolves values only near its points.
+void keepAllValues(TransferFunction& function, const Volume& volume) {
+  std::vector<TransferFunction::OpacityPoint>& points = function.opacity;
+  if (volume.minimum < points.front().scalar) points.insert(points.begin(), {volume.minimum, points.front().opacity});
+  if (volume.maximum > points.back().scalar) points.push_back({volume.maximum, points.back().opacity});
+  for (TransferFunction::OpacityPoint& point : points) point.opacity = std::max(point.opacity, kInvisibleOpacity);
+}
+
 /// What a baked volume was baked with, changed by what is given.
 Classification bakedClassification(const ClassificationDescription& given, const Volume& volume) {
   if (given.albedoGrid && given.albedoGrid != kNone)
     fail(ErrorKind::Usage, "{} chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          Parameter("albedo-grid"), volume.source);
   Classification classification = *volume.classification;
-  const bool isChanged = given.densityScale || given.albedo || given.transferFunction || given.order;
+  const bool isChanged = given.densityScale || given.albedo || given.transferFunction || given.iso || given.order;
   if (isChanged && volume.classificationIsFixed)
     fail(ErrorKind::Usage,
          "{} was baked for one classification, which {}, {}, {} and {} cannot change: leave them out, or bake it with {}",
@@ -34,6 +48,11 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
     fail(ErrorKind::Usage, "{} says how the values of a volume are read, and {} has been read without: give it where that is opened",
          Parameter(channels.empty() ? "labels" : "channel"), volume.source);
   if (volume.classification) classification = bakedClassification(*this, volume);
+  if (iso) {
+    classification.transferFunction = isoFunction(*iso, volume);
+    classification.order = order.value_or(ClassificationOrder::Post);
+    return classification;
+  }
   if (transferFunction) {
     classification.transferFunction = isInlineJson(*transferFunction)
                                           ? parseTransferFunction(*transferFunction, volume)
@@ -57,9 +76,28 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
   return classification;
 }
 
+Classification ClassificationDescription::resolveProjected(const Volume& volume, IntensityProjection projection) const {
+  for (const auto& [name, isGiven] : {std::pair("iso", iso.has_value()), {"labels", labels.has_value()}, {"channel", !channels.empty()}})
+    if (isGiven)
+      fail(ErrorKind::Usage, "{} shows values by a transfer function, and {} has no part in that: leave it out", Parameter("mode"),
+           Parameter(name));
+  if (volume.classificationIsFixed)
+    fail(ErrorKind::Usage, "{} shows values, and {} was baked for one classification without them: bake it with {}", Parameter("mode"),
+         volume.source, Parameter("keep-scalars"));
+  Classification classification;
+  if (transferFunction)
+    classification.transferFunction =
+        ClassificationDescription{.transferFunction = transferFunction}.resolve(volume, false).transferFunction;
+  else if (volume.classification)
+    classification.transferFunction = volume.classification->transferFunction;
+  if (!classification.transferFunction) classification.transferFunction = intensityFunction(volume, projection);
+  if (projection == IntensityProjection::Average) keepAllValues(*classification.transferFunction, volume);
+  return classification;
+}
+
 std::optional<GridRequest> ClassificationDescription::grid() const {
   if (albedoGrid) return *albedoGrid == kNone ? std::nullopt : std::optional(GridRequest{.name = *albedoGrid, .isRequired = true});
-  return albedo || transferFunction || !channels.empty() ? std::nullopt : std::optional(GridRequest());
+  return albedo || transferFunction || iso || !channels.empty() ? std::nullopt : std::optional(GridRequest());
 }
 
 void ClassificationDescription::check(const InputDescription& input) const {
@@ -77,7 +115,7 @@ void ClassificationDescription::check(const InputDescription& input) const {
 
 LabelRequest ClassificationDescription::labelRequest() const {
   if (labels) return {.labels = *labels, .ofAllGrids = true};
-  if (densityScale || albedo || transferFunction || albedoGrid) return {};
+  if (densityScale || albedo || transferFunction || iso || albedoGrid) return {};
   return {.labels = Labels()};
 }
 

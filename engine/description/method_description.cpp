@@ -19,16 +19,22 @@ Draw MethodDescription::drawing() const {
 }
 
 void MethodDescription::apply(FrameSettings& frame) const {
-  frame.lod = float(lod.value_or(paper ? 0.0 : 1.0));
+  frame.lod = float(lod.value_or(paper || isProjected() ? 0.0 : 1.0));
+  if (isProjected() && frame.lod > 0.0f)
+    fail(ErrorKind::Usage, "{} shows the values of voxels, not of levels of detail: leave {} out", Parameter("mode"), Parameter("lod"));
   if (drawing() == Draw::Gather) {
     if (hasOptionsOfSplats())
       fail(ErrorKind::Usage, "{} computes exact transmittance and has nothing of the paper's method: leave {}, {} and {} out, or use {}",
            Parameter("draw", "gather"), Parameter("paper"), Parameter("attenuation"), Parameter("composite"), Parameter("draw", "splats"));
     GatherSettings gather;
+    gather.projection = mode.value_or(IntensityProjection::None);
     gather.endTransmittance = culling.value_or(true) ? float(cullThreshold.value_or(double(gather.endTransmittance))) : 0.0f;
     frame.method = gather;
     return;
   }
+  if (isProjected())
+    fail(ErrorKind::Usage, "{} is drawn by marching rays: leave {}, {}, {} and {} out", Parameter("mode"), Parameter("draw", "splats"),
+         Parameter("paper"), Parameter("attenuation"), Parameter("composite"));
   SplatSettings splats;
   splats.composite = composite.value_or(paper ? Composite::Additive : Composite::Normalised);
   splats.attenuation = attenuation.value_or(paper ? AttenuationLookup::Nearest : AttenuationLookup::Bilinear);

@@ -73,7 +73,8 @@ MethodDescription resolvedMethod(const MethodDescription& given) {
   FrameSettings frame;
   given.apply(frame);
   const TableSettings table = given.table();
-  MethodDescription result{.draw = Draw::Gather,
+  MethodDescription result{.mode = given.mode,
+                           .draw = Draw::Gather,
                            .directions = table.directions,
                            .code = table.code,
                            .pathLengthCorrection = table.pathLengthCorrection,
@@ -120,6 +121,8 @@ void SceneDescription::check() const {
   if (!added.empty() && method.drawing() == Draw::Splats)
     fail(ErrorKind::Usage, "splats are drawn of one volume: leave out {} and other options of splats, or {}", Parameter("draw", "splats"),
          Parameter("add"));
+  if (method.isProjected() && !added.empty())
+    fail(ErrorKind::Usage, "{} shows the values of one volume: leave {} out", Parameter("mode"), Parameter("add"));
   for (const AddedVolume& one : added) {
     one.input.check();
     one.classification.check(one.input);
@@ -135,11 +138,13 @@ void SceneDescription::check() const {
 }
 
 Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
-  return input.open(maximumVoxels,
-                    {.more = {.temperature = emission.grid(), .albedo = classification.grid(), .mayBeMissing = isFrame},
-                     .labels = classification.labelRequest(),
-                     .channels = classification.channels},
-                    level, progress);
+  return input.open(
+      maximumVoxels,
+      {.more = method.isProjected() ? MoreGrids{.mayBeMissing = isFrame}
+                                    : MoreGrids{.temperature = emission.grid(), .albedo = classification.grid(), .mayBeMissing = isFrame},
+       .labels = method.isProjected() ? LabelRequest() : classification.labelRequest(),
+       .channels = classification.channels},
+      level, progress);
 }
 
 std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount, bool mayStayFile, bool isFrame,
@@ -203,6 +208,7 @@ Scene SceneDescription::resolve(std::shared_ptr<const Volume> volume) const {
 }
 
 Classification SceneDescription::resolveClassification(const Volume& volume) const {
+  if (method.isProjected()) return classification.resolveProjected(volume, *method.mode);
   Classification result = classification.resolve(volume, emission.shines(volume));
   result.emission = emission.resolve(volume, result);
   if (result.emission && !classification.albedo && !volume.classification) result.albedo = glm::vec3(kSmokeAlbedo);
@@ -211,7 +217,12 @@ Classification SceneDescription::resolveClassification(const Volume& volume) con
 
 void SceneDescription::resolveView(Scene& scene) const {
   scene.camera = cameras(scene).front();
-  scene.lighting = lighting.resolve(*scene.volume, scene.classification, scene.camera);
+  scene.lighting = resolveLighting(*scene.volume, scene.classification, scene.camera);
+}
+
+std::optional<Lighting> SceneDescription::resolveLighting(const Volume& volume, const Classification& classified,
+                                                          const Camera& seenBy) const {
+  return method.isProjected() ? std::nullopt : lighting.resolve(volume, classified, seenBy);
 }
 
 Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {

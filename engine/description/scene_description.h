@@ -117,6 +117,7 @@ struct ClassificationDescription {
   /// A grid of vectors of an OpenVDB file: linear colours, 0 to 1; kNone for none; else that of a usual name (grid_names.h), if there is
   /// one and neither albedo nor transfer function are given.
   std::optional<std::string> albedoGrid;
+  std::optional<IsoSurface> iso;                ///< in place of a transfer function
   std::optional<ClassificationOrder> order;     ///< of a transfer function; else Post
   /// How labels are drawn, which the values then are. Else whole numbers, booleans and masks of an OpenVDB file are labels, all of which
   /// are drawn, unless another field of the classification is given.
@@ -128,6 +129,9 @@ struct ClassificationDescription {
   /// refused where that is fixed. Otherwise, without any field, scans have scanTransferFunction, level sets are opaque, and others
   /// have the automatic density scale of volumes that shine, or do not.
   Classification resolve(const Volume& volume, bool shines) const;
+  /// What values are projected by: the transfer function that is given or baked, else intensityFunction(), whatever the other fields say.
+  /// Fails for isosurfaces, labels and channels, and for a baked volume without values.
+  Classification resolveProjected(const Volume& volume, IntensityProjection projection) const;
   /// Gives what was resolved for another volume.
   void take(const Classification& resolved);
 
@@ -219,6 +223,7 @@ struct AddedVolume {
 
 /// The method of drawing, in which the paper and FreeVoxels differ. What is not given is the default of FreeVoxels, or the paper's.
 struct MethodDescription {
+  std::optional<IntensityProjection> mode;  ///< else None: rays see a medium. Others show values: no light, whatever lights there are
   bool paper = false;  ///< the paper's side of composite, attenuation, directions, code, path length, gradient, lod and culling
   std::optional<Draw> draw;  ///< else by drawing()
   std::optional<Composite> composite;
@@ -236,7 +241,8 @@ struct MethodDescription {
   bool hasOptionsOfSplats() const;
   /// `draw`, or if it is not given Splats with options of theirs, else Gather.
   Draw drawing() const;
-  /// Fails where gathering is asked for with options of splats.
+  bool isProjected() const { return mode.value_or(IntensityProjection::None) != IntensityProjection::None; }
+  /// Fails where gathering or a projection is asked for with options of splats, and for levels of detail of a projection.
   void apply(FrameSettings& frame) const;
 
   bool operator==(const MethodDescription&) const = default;
@@ -316,6 +322,8 @@ struct SceneDescription {
   Scene resolve(std::shared_ptr<const Volume> volume) const;
   /// The two parts of resolve(): classification, and camera and light. `scene` must have the other part.
   Classification resolveClassification(const Volume& volume) const;
+  /// The light, of which a projection has none.
+  std::optional<Lighting> resolveLighting(const Volume& volume, const Classification& classification, const Camera& camera) const;
   void resolveView(Scene& scene) const;
   /// As resolve(), but with the camera, the lights and the scales of densities and temperatures or the transfer function of another
   /// volume's scene, so that frames of one film fit together.

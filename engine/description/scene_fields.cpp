@@ -26,6 +26,26 @@ NoData readNoData(const std::string& name, const std::string& given) {
   return {.value = readNumbers({.name = name, .form = "VALUE or none", .count = 1}, given)[0]};
 }
 
+constexpr const char* kIsoForm = "VALUE[,COLOR]";
+
+IsoSurface readIsoSurface(const std::string& name, const std::string& given) {
+  const std::size_t comma = given.find(',');
+  IsoSurface surface{.value = readNumbers({.name = name, .form = kIsoForm, .count = 1}, given.substr(0, comma))[0]};
+  if (comma == std::string::npos) return surface;
+  if (const std::optional<glm::dvec3> named = namedColor(given.substr(comma + 1))) {
+    surface.color = *named;
+    return surface;
+  }
+  const std::vector<double> color = readNumbers({.name = name, .form = kIsoForm, .count = 3, .range = kUnit}, given.substr(comma + 1));
+  surface.color = {color[0], color[1], color[2]};
+  return surface;
+}
+
+std::string isoSurfaceText(const IsoSurface& surface) {
+  const std::string value = numberText(surface.value);
+  return surface.color == IsoSurface{}.color ? value : value + "," + numberText(surface.color);
+}
+
 void addInput(std::vector<SceneField>& fields) {
   using Input = InputDescription;
   Section<Input> section(fields, "input", &SceneDescription::input);
@@ -73,10 +93,12 @@ void addClassification(std::vector<SceneField>& fields) {
   section.add("albedo-grid", &Classified::albedoGrid, text(Kind::Name, "NAME"));
   section.add("transfer-function", &Classified::transferFunction, text(Kind::File, "FILE.json")).excludes = {"density-scale", "albedo",
                                                                                                              "albedo-grid"};
+  section.add("iso", &Classified::iso, Codec<IsoSurface>{.form = kIsoForm, .read = readIsoSurface, .text = isoSurfaceText}).excludes = {
+      "transfer-function", "density-scale", "albedo", "albedo-grid"};
   section.add("classification", &Classified::order, words(kOrderWords));
   SceneField& labels =
       section.add("labels", &Classified::labels, Codec<Labels>{.form = kLabelsForm, .read = readLabels, .text = labelsText});
-  labels.excludes = {"transfer-function", "albedo-grid"};
+  labels.excludes = {"transfer-function", "iso", "albedo-grid"};
   SceneField& channels = section.add(
       "channel", Kind::Value, kChannelForm,
       [](Classified& classified, const Texts& given) {
@@ -89,7 +111,7 @@ void addClassification(std::vector<SceneField>& fields) {
         return texts;
       });
   channels.repeated = true;
-  channels.excludes = {"transfer-function", "albedo", "albedo-grid", "labels", "temperature-grid"};
+  channels.excludes = {"transfer-function", "iso", "albedo", "albedo-grid", "labels", "temperature-grid"};
 }
 
 void addEmission(std::vector<SceneField>& fields) {
@@ -213,6 +235,7 @@ void addLighting(std::vector<SceneField>& fields) {
 void addMethod(std::vector<SceneField>& fields) {
   using Method = MethodDescription;
   Section<Method> section(fields, "method", &SceneDescription::method);
+  section.add("mode", &Method::mode, words(kModeWords));
   section.add("composite", &Method::composite, words(kCompositeWords));
   section.add("draw", &Method::draw, words(kDrawWords));
   section.add("attenuation", &Method::attenuation, words(kAttenuationWords));

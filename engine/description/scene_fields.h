@@ -26,6 +26,7 @@ inline const Words<ClassificationOrder> kOrderWords{{"post", "pre"}};
 inline const Words<Shading> kShadingWords{{"auto", "scatter", "gradient"}};
 inline constexpr const char* kAllOrdersWord = "all";  ///< kAllOrders
 inline const Words<LightAttenuation> kLightAttenuationWords{{"table", "exact", "auto"}};
+inline const Words<IntensityProjection> kModeWords{{"volume", "mip", "average"}};
 inline const Words<Draw> kDrawWords{{"gather", "splats"}};
 inline const Words<Composite> kCompositeWords{{"normalised", "additive", "sorted"}};
 inline const Words<AttenuationLookup> kAttenuationWords{{"bilinear", "nearest"}};

@@ -296,6 +296,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,
                             .mainAxis = majorAxis(rays.direction),
+                            .projection = int(settings.gather().projection),
                             .raysOfPixel = raysOfPixel};
   const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, 1);
   frame.seenLow = seen[0];

@@ -26,6 +26,8 @@
 #include "embedded/gather_pre_unlit.h"
 #include "embedded/gather_pre_unlit_cube.h"
 #include "embedded/gather_pre_unlit_merged.h"
+#include "embedded/gather_projected_cube.h"
+#include "embedded/gather_projected_whole.h"
 #include "embedded/gather_refine.h"
 #include "embedded/gather_resample.h"
 #include "embedded/gather_roughness.h"
@@ -37,8 +39,12 @@ namespace freevoxels {
 
 namespace {
 
-const Shader& gatherShader(const GatherVolume& volume, GatherPass::Case which) {
+const Shader& gatherShader(const GatherVolume& volume, bool isProjected, GatherPass::Case which) {
   using namespace shaders;
+  if (isProjected) {
+    FV_CHECK_EQ(volume.hasScalars() && !volume.isSampled(), true);
+    return which == GatherPass::Case::Cube ? gather_projected_cube : gather_projected_whole;
+  }
   static constexpr std::array<std::array<std::array<const Shader*, 3>, 3>, 2> kShaders{{
       {{{&gather_pre_unlit, &gather_pre_unlit_cube, &gather_pre_unlit_merged},
         {&gather_pre_lit, &gather_pre_lit_cube, &gather_pre_lit_merged},
@@ -70,10 +76,10 @@ GatherPass::GatherPass(const Device& device)
       noLight_(device, sizeof(glm::vec4), MemoryUse::Device, "no scattered light", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
       noLightTexels_(device, noLight_) {}
 
-void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels,
-                              bool holdout) {
+void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout,
+                              bool isProjected) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, holdout, gatherShader(volume, Case::Whole));
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, holdout, gatherShader(volume, isProjected, Case::Whole));
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
@@ -131,7 +137,8 @@ void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const 
                           const shader::SamplesPush& samples) const {
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
-    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, frame.raysOfPixel > 0, gatherShader(volume, how.which));
+    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, frame.raysOfPixel > 0,
+                                         gatherShader(volume, frame.projection != 0, how.which));
     const std::vector<Binding> bindings = gatherBindings(volume, axis, how);
     if (how.arguments != nullptr)
       commands.dispatchIndirect(pipeline, bindings, samples, *how.arguments, how.offset, how.mostGroups);

@@ -23,8 +23,9 @@ class GatherPass {
  public:
   explicit GatherPass(const Device& device);
   /// Has the pipelines that march rays along the given axes compiled. The volume is prepared for the frame. `levels` says whether the frame
-  /// has levels of detail above voxels, `holdout` whether it has one.
-  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout);
+  /// has levels of detail above voxels, `holdout` whether it has one, `isProjected` whether scalars are projected.
+  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout,
+                           bool isProjected);
   /// Uploads the holdout of the next frames, if there is one and it is not that of the last frame. Returns its GatherFrame::holdout.
   glm::uvec2 holdOut(const std::shared_ptr<const Holdout>& holdout);
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,

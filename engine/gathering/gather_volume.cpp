@@ -356,6 +356,7 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
   frame.extinctionUnit = float(1.0 / (kStoredDepth * built_.volume.voxelSize));
   frame.sourceUnit = float(sourceUnit_);
   frame.color = built_.volume.albedo / float(sourceUnit_);
+  frame.projectionLayer = hasScalars() ? frame.extinctionUnit * float(classification_.transferFunction->unitDistance) : 0.0f;
   frame.deltaScale = deltaScale_;
   describeLights(frame);
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];

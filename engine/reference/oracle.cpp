@@ -182,6 +182,7 @@ Oracle renderOracle(const Volume& volume, const Classification& classification, 
     ray.worldDirection = inWorld / ray.worldLength;
     ray.distance = settings.depth;
     ray.end = endOfRay(settings, at);
+    if (settings.projection != IntensityProjection::None) return projectRay(field, ray, classification, settings.projection);
     return marchRay(field, ray, settings.step, light.get());
   };
   return Sampler(settings, firstSamplesOf(volume, rays, settings), sum, progress).run();

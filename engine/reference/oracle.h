@@ -17,6 +17,7 @@
 #include "engine/scene/camera.h"
 #include "engine/scene/holdout.h"
 #include "engine/scene/lighting.h"
+#include "engine/scene/render_settings.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/scattering_medium.h"
 #include "engine/volume/volume.h"
@@ -30,6 +31,7 @@ struct OracleSettings {
   double tolerance = 1e-3;  ///< largest change of a pixel's premultiplied RGBA by the last doubling
   int maximumSamples = 32;  ///< most rays along an edge of a pixel: a power of two, at least 4
   std::optional<Lighting> lighting = std::nullopt;  ///< if empty, every voxel sends out its colour
+  IntensityProjection projection = IntensityProjection::None;  ///< of values, without lighting
   std::shared_ptr<const Holdout> holdout = nullptr;  ///< of the image's size: where the rays of its pixels end; null if there is none
 };
 

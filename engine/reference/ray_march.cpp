@@ -328,6 +328,33 @@ RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step,
   return March(field, ray, step, light).run();
 }
 
+RaySum projectRay(const ReferenceField& field, const MarchedRay& ray, const Classification& classification,
+                  IntensityProjection projection) {
+  constexpr double kLeastCoverage = 0.5;
+  double largest = -std::numeric_limits<double>::infinity(), largestAt = 0.0, sum = 0.0, coverage = 0.0, distance = 0.0;
+  walkField(field, ray, ray.end, [&](const glm::vec4* corner, const glm::vec4*, glm::ivec3 cell, double enter, double leave) {
+    const ClassifiedSteps steps(*field.integral(), corner, localAt(ray, cell, enter), localAt(ray, cell, leave), 1.0);
+    const double part = (leave - enter) / steps.count;
+    for (int i = 0; i < steps.count; ++i) {
+      const glm::dvec4 value = steps.cubic.at((i + 0.5) / steps.count);
+      const double scalar = value.r / value.a, t = enter + (i + 0.5) * part;
+      if (value.a >= kLeastCoverage && scalar > largest) {
+        largest = scalar;
+        largestAt = t;
+      }
+      sum += part * value.r;
+      coverage += part * value.a;
+      distance += part * value.a * t;
+    }
+    return true;
+  });
+  const bool isMaximum = projection == IntensityProjection::Maximum;
+  if (isMaximum ? !std::isfinite(largest) : coverage == 0.0) return {};
+  const ClassifiedVoxel shown = classify(classification, float(isMaximum ? largest : sum / coverage));
+  const double opacity = -std::expm1(-shown.extinction * classification.transferFunction->unitDistance);
+  return {.color = opacity * shown.color, .opacity = opacity, .distance = opacity * (isMaximum ? largestAt : distance / coverage)};
+}
+
 double marchDepth(const ReferenceField& field, const MarchedRay& ray, double end) {
   const double most = -std::log(kNegligibleTransmittance);
   double depth = 0.0;

@@ -6,6 +6,7 @@
 
 #include "engine/reference/light_march.h"
 #include "engine/reference/reference_field.h"
+#include "engine/scene/render_settings.h"
 
 namespace freevoxels {
 
@@ -32,6 +33,10 @@ struct RaySum {
 /// it scatters to the eye. Emission j adds the integral of T j ds. A ray ends where less than 1e-7 of the light passes.
 RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step,
                 const LightMarch* light = nullptr);
+
+/// The largest scalar of a Post field along a ray, where voxels with data have at least half of the interpolation's weights, or the mean of
+/// all over its length, weighted by that; classified, with `opacity` that over the function's unit distance. `projection` must not be None.
+RaySum projectRay(const ReferenceField& field, const MarchedRay& ray, const Classification& classification, IntensityProjection projection);
 
 /// The exact optical depth up to t = `end`; an arbitrary value above 16 if it is larger than that.
 double marchDepth(const ReferenceField& field, const MarchedRay& ray, double end);

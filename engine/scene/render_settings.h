@@ -30,12 +30,18 @@ enum class Draw : int {
   Splats = 1,  ///< SplatSettings
 };
 
+/// What a ray shows of the scalars on its way in place of a medium: the largest, or the mean of all, to which the transfer function gives a
+/// colour and an opacity; neither depends on the order of the scalars.
+enum class IntensityProjection : int { None = 0, Maximum = 1, Average = 2 };
+
 /// Samples of the image march through the volume and compute their own transmittance (engine/docs/gather.md).
 struct GatherSettings {
   float endTransmittance = 1.0f / 512.0f;  ///< transmittance to the eye at which a ray ends; 0 marches all of it
   /// The roughness up to which rays are interpolated from rays twice as far apart (gather_roughness.comp); 0 marches every ray, as do
   /// parts, cubes and images of voxels smaller than 0.8 pixels.
   float sampleTolerance = 1.0f / 16.0f;
+  /// Only of single volumes that are classified after interpolation (Classification::isPost), without lighting, at `lod` 0.
+  IntensityProjection projection = IntensityProjection::None;
 };
 
 /// Billboards are added in any order, with transmittances of the attenuation table: Subr et al. 2007.
@@ -67,6 +73,7 @@ struct FrameSettings {
   const GatherSettings& gather() const { return std::get<GatherSettings>(method); }
   SplatSettings& splats() { return std::get<SplatSettings>(method); }
   const SplatSettings& splats() const { return std::get<SplatSettings>(method); }
+  bool isProjected() const { return gathers() && gather().projection != IntensityProjection::None; }
   bool isNormalised() const { return gathers() || splats().composite == Composite::Normalised; }
   bool isSorted() const { return !gathers() && splats().composite == Composite::Sorted; }
   /// How lights are looked up in the table, if they are.

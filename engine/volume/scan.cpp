@@ -14,6 +14,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
+#include "engine/image/srgb.h"
 #include "engine/volume/histogram.h"
 
 namespace freevoxels {
@@ -195,6 +196,25 @@ double highestUsual(const Histogram& histogram) {
   return histogram.minimum + range * double(bins) / double(histogram.counts.size());
 }
 
+/// The values of a scan that projections show as black and white.
+std::pair<double, double> visibleRange(const Volume& volume, IntensityProjection projection) {
+  const std::vector<TransferFunction::OpacityPoint> classes = scanTransferFunction(volume).opacity;
+  const auto visible = std::ranges::find_if(classes, [](const auto& point) { return point.opacity > 0.0f; });
+  const bool isLowest = visible == classes.begin() || visible == classes.end();
+  const double low = isLowest ? double(volume.minimum) : double(std::prev(visible)->scalar);
+  const Histogram histogram = histogramOf(volume, kFineBins);
+  if (projection == IntensityProjection::Maximum) return {low, highestUsual(histogram)};
+  const double width = (double(histogram.maximum) - double(histogram.minimum)) / double(histogram.counts.size());
+  double sum = 0.0, count = 0.0;
+  for (std::size_t i = 0; i < histogram.counts.size(); ++i) {
+    const double value = histogram.minimum + (double(i) + 0.5) * width;
+    if (value < low) continue;
+    sum += value * double(histogram.counts[i]);
+    count += double(histogram.counts[i]);
+  }
+  return {volume.minimum, count > 0.0 ? sum / count : double(volume.maximum)};
+}
+
 }  // namespace
 
 bool looksLikeScan(const Volume& volume) {
@@ -299,6 +319,29 @@ TransferFunction scanTransferFunction(const Volume& volume) {
     function.color.push_back({std::max(value, least), kColors[i]});
   }
   return function;
+}
+
+TransferFunction intensityFunction(const Volume& volume, IntensityProjection projection) {
+  constexpr int kSteps = 32;
+  auto [low, high] =
+      looksLikeScan(volume) ? visibleRange(volume, projection) : std::pair(std::min(double(volume.minimum), 0.0), double(volume.maximum));
+  if (!(low < high)) high = low + 1.0;
+  TransferFunction function{.opacity = {}, .color = {{float(low), glm::vec3(1.0f)}}, .unitDistance = volume.voxelSize()};
+  for (int i = 0; i <= kSteps; ++i) {
+    const double part = double(i) / kSteps;
+    function.opacity.push_back({float(low + part * (high - low)), linearFromSrgb(float(part))});
+  }
+  return function;
+}
+
+TransferFunction isoFunction(const IsoSurface& surface, const Volume& volume) {
+  constexpr double kVoxelsOfUnit = 1.0 / 64.0;
+  const auto value = float(surface.value);
+  return {
+      .opacity = {{std::nextafter(value, -kHuge), 0.0f}, {value, 1.0f}},
+      // As wide as the values, which a function's table resolves only near its points.
+      .color = {{std::min(volume.minimum, value), glm::vec3(surface.color)}, {std::max(volume.maximum, value), glm::vec3(surface.color)}},
+      .unitDistance = kVoxelsOfUnit * volume.voxelSize()};
 }
 
 }  // namespace freevoxels

@@ -1,6 +1,7 @@
 #pragma once
 // Volumes of measured values, such as CT and MR scans, and a default transfer function for them.
 
+#include "engine/scene/render_settings.h"
 #include "engine/volume/classification.h"
 
 namespace freevoxels {
@@ -43,5 +44,21 @@ void orientScan(Volume& volume);
 /// class that most voxels on the box's sides belong to is transparent, or the lowest class if none has half
 /// of them. The farther a class is from it, the more opaque it is.
 TransferFunction scanTransferFunction(const Volume& volume);
+
+/// White, of an opacity with which values over black look evenly graded on a display (sRGB). The largest values along rays (Maximum) are
+/// graded from the smallest value or 0 to the largest value; of a scan from where scanTransferFunction() begins to be opaque to the largest
+/// value but outliers. Means of a scan are smaller: from the smallest value to the mean of those that are not transparent.
+TransferFunction intensityFunction(const Volume& volume, IntensityProjection projection);
+
+/// A surface in front of all values from this one on.
+struct IsoSurface {
+  double value = 0.0;
+  glm::dvec3 color{0.8};  ///< linear Rec.709, 0..1
+
+  bool operator==(const IsoSurface&) const = default;
+};
+
+/// Opaque within a hundredth of a voxel from the surface's value on.
+TransferFunction isoFunction(const IsoSurface& surface, const Volume& volume);
 
 }  // namespace freevoxels

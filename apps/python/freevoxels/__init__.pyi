@@ -63,6 +63,7 @@ class _Classification(TypedDict, total=False):
     albedo_grid: str
     transfer_function: _Path | Mapping[str, Any]
     classification: Literal["post", "pre"] | _Section
+    iso: _Numbers
     labels: _Numbers
     channels: str | Sequence_[str]
 
@@ -88,6 +89,7 @@ class _Light(TypedDict, total=False):
     scattering: int | Literal["all"]
 
 class _Method(TypedDict, total=False):
+    mode: Literal["volume", "mip", "average"]
     draw: Literal["gather", "splats"]
     composite: Literal["normalised", "additive", "sorted"]
     attenuation: Literal["bilinear", "nearest"]
