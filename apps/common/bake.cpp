@@ -25,7 +25,8 @@ constexpr std::uint64_t kMaxBytesInMemory = std::uint64_t(1) << 30;
 /// Whether a file says with which value of the field it was baked.
 bool isBaked(const SceneField& field) {
   return field.section == "classification" || field.section == "emission" || field.name == "volume" || field.name == "resolution" ||
-         field.name == "grid" || field.name == "raw" || field.name == "series" || field.name == "time-step" || field.name == "spacing";
+         field.name == "grid" || field.name == "raw" || field.name == "series" || field.name == "time-step" || field.name == "spacing" ||
+         field.name == "pyramid-level";
 }
 
 /// A pointer to a volume that somebody else owns.

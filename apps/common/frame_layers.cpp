@@ -30,7 +30,10 @@ std::string layerName(const ChannelStyle& channel) {
 std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, const SceneDescription& description, const Scene& scene,
                                         const FrameSettings& settings, const Progress& progress) {
   std::vector<glm::vec3> sum(image.pixels.size(), glm::vec3(0.0f));
-  const std::vector<ChannelStyle>& channels = description.classification.channels;
+  const bool isScan = description.input.kind() == VolumeKind::Scan;
+  ScanRequest request = description.input.scanRequest(kMaxNumberedVoxels);
+  request.channels = description.classification.channels;
+  const std::vector<ChannelStyle> channels = isScan ? scanChannels(description.input.volume, request) : request.channels;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     SceneDescription alone = description;
     for (std::size_t other = 0; other < channels.size(); ++other)

@@ -11,18 +11,24 @@ namespace {
 
 const std::vector<OptionHelp> kVolumeHelp{
     {"volume",
-     "OpenVDB file, scan (.nrrd, .nii.gz, .mha, .vti, .vtk, .tif, .raw, a DICOM folder or file), baked volume (.fvx), or procedural:NAME "
+     "OpenVDB file, scan (.nrrd, .nii.gz, .mha, .vti, .vtk, .tif, .zarr, .raw, a DICOM folder or file), baked volume (.fvx), or "
+     "procedural:NAME "
      "('freevoxels generate --list' has the names); may be left "
      "out where a --scene has it"},
     {"resolution", fmt::format("Voxels of a procedural volume, one number for a cube [{}]", kDefaultResolution)},
     {"grid",
-     "Grid of the file, NAME[k] if several have the name; of a .vti the array [density, smoke or a like name, or the only float grid]"},
+     "Grid of the file, NAME[k] if several have the name; of a .vti the array, of a scan with channels the one that is drawn alone "
+     "[density, smoke or a like name, or the only float grid]"},
     {"raw",
      "The file has values without a header: their number along x, y and z, and their type, u8, i8, u16, i16, u32, i32, u64, i64, f32 or "
      "f64 [as in "
      "the name NAME_256x256x128_uint16.raw]"},
     {"series", "Series of a DICOM folder, by its UID [the only one]"},
     {"time-step", "Time step of a scan with several, from 0 [0]"},
+    {"pyramid-level",
+     "Level of an OME-Zarr with several resolutions, from 0, the finest; --clip-box counts its voxels [the finest with at most 1.5 voxels "
+     "a "
+     "pixel that fits in a quarter of the memory]"},
     {"spacing", "Millimetres between the voxels of a scan along the axes of its box [as its file says]"},
     {"no-data", "Value of voxels that hold no data [of scans the value that they are filled up with around what was measured]"},
     {"clip-box",
@@ -57,7 +63,8 @@ const std::vector<OptionHelp> kVolumeHelp{
      "Draws the surface in front of all values from VALUE on, in place of a transfer function, with its colour: R,G,B, "
      "linear, #rrggbb or a basic CSS name [0.8,0.8,0.8]"},
     {"channel",
-     "Draws several grids of the file together, each by a channel option: its name or number from 0, its colour, a weight of its density, "
+     "Draws several grids or channels of the file together, each by a channel option: its name or number from 0, its colour, a weight of "
+     "its density, "
      "the "
      "values at which it begins and is full, and whether it sends out light, as dyes do, in place of scattering it: "
      "dapi:blue:100,4000:emission"},

@@ -1,6 +1,7 @@
 #include "apps/common/volume_info.h"
 
 #include <fmt/format.h>
+#include <fmt/ranges.h>
 
 #include <algorithm>
 #include <array>
@@ -79,13 +80,24 @@ std::vector<GridInfo> gridsOf(const InputDescription& input) {
   input.check();
   const VolumeKind kind = input.kind();
   if (kind == VolumeKind::OpenVdb) return describeVdb(input.volume);
-  GridInfo grid = describeVolume(input.open(std::numeric_limits<std::uint64_t>::max()));
-  if (kind != VolumeKind::Scan) return {grid};
+  constexpr std::uint64_t kAny = std::numeric_limits<std::uint64_t>::max();
+  if (kind != VolumeKind::Scan) return {describeVolume(input.open(kAny))};
   const ScanHeader header = *scanHeaderOf(input);
-  grid.name = header.array.empty() ? "scan" : printable(header.array);
-  grid.valueType = nameOf(header.type);
-  grid.gridClass = "scan";
-  return {grid};
+  std::vector<GridInfo> grids;
+  const std::size_t count = input.grid ? 1 : std::max<std::size_t>(header.channels.size(), 1);
+  for (std::size_t i = 0; i < count; ++i) {
+    InputDescription one = input;
+    std::string name = header.array.empty() ? "scan" : header.array;
+    if (!input.grid && !header.channels.empty()) {
+      one.grid = fmt::format("{}", i);
+      name = header.channels[i].name.empty() ? *one.grid : header.channels[i].name;
+    }
+    GridInfo& grid = grids.emplace_back(describeVolume(one.open(kAny)));
+    grid.name = printable(name);
+    grid.valueType = nameOf(header.type);
+    grid.gridClass = "scan";
+  }
+  return grids;
 }
 
 std::optional<ScanHeader> scanHeaderOf(const InputDescription& input) {
@@ -151,6 +163,14 @@ nlohmann::ordered_json toJson(const ScanHeader& scan) {
   json["spacing"] = triple(spacingOf(scan));
   for (const glm::dvec3& direction : directionsOf(scan)) json["directions"].push_back(triple(direction));
   if (scan.rescale) json["rescale"] = {scan.rescale->x, scan.rescale->y};
+  for (const ScanChannel& channel : scan.channels) {
+    nlohmann::ordered_json one{{"name", channel.name}, {"shown", channel.isShown}};
+    if (channel.color) one["color"] = triple(glm::dvec3(*channel.color));
+    if (channel.window) one["window"] = *channel.window;
+    json["channels"].push_back(std::move(one));
+  }
+  if (!scan.levels.empty()) json["level"] = scan.level;
+  for (const glm::ivec3& level : scan.levels) json["levels"].push_back({level.x, level.y, level.z});
   return json;
 }
 
@@ -160,6 +180,17 @@ std::vector<std::string> linesOf(const ScanHeader& scan) {
   const auto triple = [](const glm::dvec3& v) { return fmt::format("{:.6g} {:.6g} {:.6g}", v.x, v.y, v.z); };
   std::vector<std::string> lines{fmt::format("format      {}", scan.format)};
   if (scan.timeSteps > 1) lines.push_back(fmt::format("time steps  {}", scan.timeSteps));
+  if (scan.levels.size() > 1) {
+    std::vector<std::string> levels;
+    for (const glm::ivec3& level : scan.levels) levels.push_back(fmt::format("{}x{}x{}", level.x, level.y, level.z));
+    lines.push_back(fmt::format("levels      {}; this is level {}", fmt::join(levels, " "), scan.level));
+  }
+  if (!scan.channels.empty()) {
+    std::vector<std::string> channels;
+    for (std::size_t i = 0; i < scan.channels.size(); ++i)
+      channels.push_back(fmt::format("{} {}{}", i, printable(scan.channels[i].name), scan.channels[i].isShown ? "" : " (not shown)"));
+    lines.push_back(fmt::format("channels    {}", fmt::join(channels, ", ")));
+  }
   if (scan.rescale) lines.push_back(fmt::format("rescale     values of the file x {:.6g} + {:.6g}", scan.rescale->x, scan.rescale->y));
   lines.emplace_back("space       millimetres, x towards the left of the patient, y the back, z the head (LPS)");
   lines.push_back("origin      " + triple(glm::dvec3(scan.indexToWorld[3])));

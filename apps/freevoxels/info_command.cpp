@@ -53,7 +53,7 @@ void printTable(const std::vector<GridInfo>& grids) {
 
 void InfoCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("info", "Show the grids of a file, or what a scan's header says");
-  scene_.addFields(*command, {"volume", "resolution", "raw", "series", "time-step", "spacing"});
+  scene_.addFields(*command, {"volume", "resolution", "raw", "series", "time-step", "spacing", "pyramid-level"});
   scene_.addFile(*command);
   command->add_flag("--json", json_, "Print JSON for programs");
   command->add_flag("--check", check_, "Read all of a baked volume (.fvx) and refuse it where anything is damaged");

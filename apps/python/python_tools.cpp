@@ -95,7 +95,7 @@ void addTools(py::module_& module) {
       "info(volume, *, check=False, **kwargs)\n--\n\n"
       "What a file or 'procedural:NAME' holds, as 'freevoxels info --json' says it: a dictionary of its grids, or of a baked volume.\n"
       "check=True reads all of a baked volume, and raises InputError where anything is damaged. Options: resolution,\n"
-      "raw, series, time_step, spacing.");
+      "raw, series, time_step, spacing, pyramid_level.");
   module.def("bake", &bake, "volume"_a, "file"_a, "keep_scalars"_a = false, "compress"_a = false, "progress"_a = py::none(),
              "bake(volume, file, *, keep_scalars=False, compress=False, progress=None, **kwargs)\n--\n\n"
              "Classifies a volume once and writes a baked volume, whose name ends in .fvx: of a file, 'procedural:NAME', an array or a\n"

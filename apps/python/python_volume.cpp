@@ -178,7 +178,8 @@ void addVolume(py::module_& module) {
           "open", &volumeFromFile, "file"_a = py::none(),
           "open(file=None, **kwargs)\n--\n\n"
           "Reads an OpenVDB file or a scan, or makes 'procedural:NAME'; without a file the volume of a scene. Options: grid, resolution,\n"
-          "raw, series, time_step, spacing, no_data, and those of a frame, of which emission=True, temperature_grid and albedo_grid add "
+          "raw, series, time_step, spacing, pyramid_level, no_data, and those of a frame, of which emission=True, temperature_grid and "
+          "albedo_grid add "
           "grids to read. Of a baked\n"
           "volume (.fvx) a level of detail is read when a frame needs it.")
       .def("__repr__",

@@ -57,6 +57,11 @@ std::vector<std::string> openedEndings() {
   return endings;
 }
 
+/// Whether a folder is opened like a file.
+bool isOpenedFolder(const fs::path& folder) {
+  return hasEnding(folder, {".zarr"});
+}
+
 /// Whether the files of a numbered name may be frames: those of DICOM are slices.
 bool mayBeFrame(const fs::path& file) {
   return hasEnding(file, {".vdb"}) || (hasScanEnding(file) && !hasEnding(file, {".dcm", ".ima"}));
@@ -99,7 +104,7 @@ void FileDialog::go(fs::path folder) {
   for (fs::directory_iterator at(folder, problem), end; !problem && at != end && files.size() < kMaxFiles; at.increment(problem)) {
     std::error_code unknown;
     if (at->path().filename().string().starts_with('.')) continue;
-    if (at->is_directory(unknown))
+    if (at->is_directory(unknown) && !isOpenedFolder(at->path()))
       folders.push_back({.name = at->path().filename().string() + "/", .shown = at->path().filename().string() + "/"});
     else if (all_ || hasEnding(at->path(), endings_))
       files.push_back(*at);
@@ -121,7 +126,7 @@ void FileDialog::addFiles(const std::vector<fs::directory_entry>& files) {
   for (const fs::directory_entry& file : files) {
     const std::string name = file.path().filename().string(), stem = stemOf(file.path());
     std::error_code unknown;
-    const std::uintmax_t bytes = file.file_size(unknown);
+    const std::uintmax_t bytes = file.is_regular_file(unknown) ? file.file_size(unknown) : 0;
     const fs::file_time_type time = file.last_write_time(unknown);
     const bool isNumbered = !saves_ && mayBeFrame(file.path()) && !stem.empty() && std::isdigit(stem.back()) != 0;
     if (isNumbered && !framesOfSome.contains(file.path().string()))
@@ -144,7 +149,7 @@ void FileDialog::confirm(const std::string& typed) {
     return ImGui::CloseCurrentPopup();
   }
   const fs::path path = (folder_ / meant).lexically_normal();
-  if (fs::is_directory(path, unknown)) {
+  if (fs::is_directory(path, unknown) && (saves_ || !isOpenedFolder(path))) {
     go(path);
     if (problem_.empty() && !saves_) name_.clear();
     focus_ = true;

@@ -48,6 +48,9 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
     fail(ErrorKind::Usage, "{} says how the values of a volume are read, and {} has been read without: give it where that is opened",
          Parameter(channels.empty() ? "labels" : "channel"), volume.source);
   if (volume.classification) classification = bakedClassification(*this, volume);
+  if ((transferFunction || iso) && channels.empty() && volume.albedo && volume.albedo->isMade)
+    fail(ErrorKind::Usage, "{} is of one grid of values, and {} is drawn with several channels: choose one with {}",
+         Parameter(iso ? "iso" : "transfer-function"), volume.source, Parameter("grid", "NAME"));
   if (iso) {
     classification.transferFunction = isoFunction(*iso, volume);
     classification.order = order.value_or(ClassificationOrder::Post);
@@ -108,8 +111,8 @@ void ClassificationDescription::check(const InputDescription& input) const {
            input.volume);
   if (channels.empty()) return;
   doEmit(channels);
-  if (kind != VolumeKind::OpenVdb)
-    fail(ErrorKind::Usage, "{} names grids of an OpenVDB file, and '{}' has one", Parameter("channel"), input.volume);
+  if (kind != VolumeKind::OpenVdb && kind != VolumeKind::Scan)
+    fail(ErrorKind::Usage, "{} names grids of an OpenVDB file or channels of a scan, and '{}' has one", Parameter("channel"), input.volume);
   if (input.grid) fail(ErrorKind::Usage, "{} and {} exclude each other: channels are grids", Parameter("channel"), Parameter("grid"));
 }
 

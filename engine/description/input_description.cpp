@@ -104,6 +104,7 @@ VolumeKind InputDescription::kind() const {
 
 ScanRequest InputDescription::scanRequest(std::uint64_t maximumVoxels, const Progress& progress) const {
   return {.array = grid.value_or(""),
+          .pyramidLevel = pyramidLevel,
           .raw = raw,
           .series = series,
           .timeStep = timeStep,
@@ -127,8 +128,9 @@ void InputDescription::check() const {
   if (grid && isProcedural) fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("grid"), volume);
   if (resolution && !isProcedural)
     fail(ErrorKind::Usage, "{} is for procedural:NAME, and '{}' has the resolution of its grid", Parameter("resolution"), volume);
-  for (const auto& [isGiven, name] : {std::pair(raw.has_value(), "raw"), std::pair(series.has_value(), "series"),
-                                      std::pair(timeStep.has_value(), "time-step"), std::pair(spacing.has_value(), "spacing")})
+  for (const auto& [isGiven, name] :
+       {std::pair(raw.has_value(), "raw"), std::pair(series.has_value(), "series"), std::pair(timeStep.has_value(), "time-step"),
+        std::pair(spacing.has_value(), "spacing"), std::pair(pyramidLevel.has_value(), "pyramid-level")})
     if (isGiven && what != VolumeKind::Scan) fail(ErrorKind::Usage, "{} is for scans, and '{}' is none", Parameter(name), volume);
   if (spacing && !(std::min({spacing->x, spacing->y, spacing->z}) > 0.0))
     fail(ErrorKind::Usage, "{} must be above 0 along all axes", Parameter("spacing", numberText(*spacing)));
@@ -149,6 +151,8 @@ Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& wh
         fail(ErrorKind::Usage, "{} is of OpenVDB files, and '{}' is a scan, which has one grid: leave it out", Parameter(name), volume);
     ScanRequest request = scanRequest(maximumVoxels, progress);
     request.labels = what.labels.of(false);
+    request.channels = what.channels;
+    request.imageEdge = what.imageEdge;
     return clip(readScan(volume, request));
   }
   if (kindOfVolume == VolumeKind::OpenVdb) {

@@ -29,7 +29,7 @@ ClassificationDescription resolvedClassification(const ClassificationDescription
             .order = classification.order};
   const glm::vec3 albedo = classification.albedo;
   const bool isMade = scene.volume->albedo && scene.volume->albedo->isMade;
-  const bool hasLabels = isMade && given.channels.empty();
+  const bool hasLabels = isMade && scene.volume->albedo->name != kChannelsName;
   const bool hasGrid = scene.volume->albedo && !isMade && !scene.volume->classification;
   return {.densityScale = classification.densityScale,
           .albedo = glm::dvec3(shortest(albedo.r), shortest(albedo.g), shortest(albedo.b)),
@@ -138,13 +138,14 @@ void SceneDescription::check() const {
 }
 
 Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
-  return input.open(
-      maximumVoxels,
-      {.more = method.isProjected() ? MoreGrids{.mayBeMissing = isFrame}
-                                    : MoreGrids{.temperature = emission.grid(), .albedo = classification.grid(), .mayBeMissing = isFrame},
-       .labels = method.isProjected() ? LabelRequest() : classification.labelRequest(),
-       .channels = classification.channels},
-      level, progress);
+  ReadRequest what{.channels = classification.channels, .imageEdge = std::max(camera.size.x, camera.size.y)};
+  what.more.mayBeMissing = isFrame;
+  if (!method.isProjected()) {
+    what.more.temperature = emission.grid();
+    what.more.albedo = classification.grid();
+    what.labels = classification.labelRequest();
+  }
+  return input.open(maximumVoxels, what, level, progress);
 }
 
 std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount, bool mayStayFile, bool isFrame,

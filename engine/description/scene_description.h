@@ -62,6 +62,7 @@ struct InputDescription {
   std::optional<std::string> series;     ///< of DICOM files, its UID
   std::optional<int> timeStep;           ///< of a scan with several, at least 0
   std::optional<glm::dvec3> spacing;     ///< of a scan, above 0; else as its file says
+  std::optional<int> pyramidLevel;       ///< of a scan with several resolutions, at least 0, the finest; else as the image needs it
 
   /// Fails without a volume.
   void checkGiven() const;

@@ -50,7 +50,7 @@ void addInput(std::vector<SceneField>& fields) {
   using Input = InputDescription;
   Section<Input> section(fields, "input", &SceneDescription::input);
   section.add("volume", &Input::volume, text(Kind::Volume, "the name of a volume")).replaces = {
-      "grid", "resolution", "clip-box", "clip-plane", "no-data", "raw", "series", "time-step", "spacing"};
+      "grid", "resolution", "clip-box", "clip-plane", "no-data", "raw", "series", "time-step", "spacing", "pyramid-level"};
   section.add("grid", &Input::grid, text(Kind::Name, "NAME"));
   Codec<glm::ivec3> resolution = extent<glm::ivec3>("WxHxD", kMaxResolution);
   resolution.text = [](const glm::ivec3& size) { return resolutionText(size); };
@@ -65,6 +65,7 @@ void addInput(std::vector<SceneField>& fields) {
   section.add("series", &Input::series, text(Kind::Name, "UID"));
   section.add("time-step", &Input::timeStep, numbers<int>({.form = "N", .range = {0.0, double(kBeyondAnything)}, .whole = true}));
   section.add("spacing", &Input::spacing, numbers<glm::dvec3>({.form = "X,Y,Z", .range = kPositive, .mayBeOne = true}));
+  section.add("pyramid-level", &Input::pyramidLevel, numbers<int>({.form = "N", .range = {0.0, 64.0}, .whole = true}));
   section.add("clip-plane", &Input::clipPlane, numbers<ClipPlane>({.form = "X,Y,Z,NX,NY,NZ", .range = {-1e30, 1e30}}));
 }
 

@@ -80,7 +80,7 @@ void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std:
   ScalarBricks sums(volume.dimensions, values.front().corner());
   for (const ScalarBricks& channel : values)
     for (std::size_t brick = 0; brick < channel.bricks().size(); ++brick) sums.makeBrick(channel.cell(brick));
-  AlbedoGrid colors{.name = "channels", .values = {}, .isMade = true};
+  AlbedoGrid colors{.name = kChannelsName, .values = {}, .isMade = true};
   colors.values.fill(sums);
   tbb::parallel_for(std::size_t(0), sums.bricks().size(), [&](std::size_t brick) {
     std::vector<const ScalarBricks::Brick*> of;
@@ -102,7 +102,7 @@ void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std:
   volume.scalars = emits ? ScalarBricks(volume.dimensions, sums.corner()) : sums;
   summariseValues(volume);
   if (!emits) return;
-  volume.temperature = TemperatureGrid{.name = "channels", .isRadiance = true, .values = std::move(sums)};
+  volume.temperature = TemperatureGrid{.name = kChannelsName, .isRadiance = true, .values = std::move(sums)};
   summariseValues(*volume.temperature);
   coverBricks(volume, volume.temperature->values);
 }

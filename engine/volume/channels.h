@@ -14,6 +14,8 @@ namespace freevoxels {
 
 /// Channels of a volume at most.
 inline constexpr std::size_t kMostChannels = 16;
+/// The name of the albedo and radiance grids that are made of channels.
+inline constexpr const char* kChannelsName = "channels";
 
 /// How a channel is drawn. Its intensity is 0 up to the beginning of the window, 1 from its end on, and linear between.
 struct ChannelStyle {

@@ -201,11 +201,11 @@ class DicomScan : public ScanReader {
     header_.indexToWorld[2] = glm::dvec4((*slices_.back().position - *slices_.front().position) / double(places - 1), 0.0);
   }
 
-  void read(int timeStep, const SampleSink& sink, const Progress& progress) override {
+  void read(const ScanPart& part, const SampleSink& sink, const Progress& progress) override {
     const auto steps = std::size_t(header_.timeSteps);
     glm::ivec3 extent = header_.dimensions;
     if (slices_.size() > steps) extent.z = 1;
-    for (std::size_t i = std::size_t(timeStep), z = 0; i < slices_.size(); i += steps, ++z) {
+    for (std::size_t i = std::size_t(part.timeStep), z = 0; i < slices_.size(); i += steps, ++z) {
       if (progress) progress("reading the scan", double(z) / header_.dimensions.z);
       readFile(slices_[i].file, {.first = {0, 0, int(z)}, .extent = extent}, sink);
     }

@@ -2,14 +2,11 @@
 #include <itkMetaImageIO.h>
 #include <itkNiftiImageIO.h>
 #include <itkNrrdImageIO.h>
-#include <itkTIFFImageIO.h>
 #include <itkVTKImageIO.h>
 #include <zlib.h>
 
 #include <algorithm>
 #include <cctype>
-#include <cstdarg>
-#include <cstdio>
 #include <iterator>
 #include <limits>
 #include <map>
@@ -35,8 +32,6 @@ itk::ImageIOBase::Pointer readerOf(ItkFormat format) {
       return itk::MetaImageIO::New().GetPointer();
     case ItkFormat::Nifti:
       return itk::NiftiImageIO::New().GetPointer();
-    case ItkFormat::Tiff:
-      return itk::TIFFImageIO::New().GetPointer();
     case ItkFormat::Vtk:
       break;
   }
@@ -51,46 +46,11 @@ const char* nameOf(ItkFormat format) {
       return "MetaImage";
     case ItkFormat::Nifti:
       return "NIfTI";
-    case ItkFormat::Tiff:
-      return "TIFF";
     case ItkFormat::Vtk:
       break;
   }
   return "VTK";
 }
-
-extern "C" {
-// Of ITK's own copy of libtiff, for which it installs no header.
-using ItkTiffHandler = void (*)(const char* module, const char* format, va_list values);
-ItkTiffHandler itk_TIFFSetErrorHandler(ItkTiffHandler handler);
-ItkTiffHandler itk_TIFFSetWarningHandler(ItkTiffHandler handler);
-}
-
-/// As long as one lives, libtiff prints nothing, and its first error is kept, some of which ITK passes over.
-class TiffErrors {
- public:
-  TiffErrors() : error_(itk_TIFFSetErrorHandler(&keep)), warning_(itk_TIFFSetWarningHandler(nullptr)) { first().clear(); }
-  ~TiffErrors() {
-    itk_TIFFSetErrorHandler(error_);
-    itk_TIFFSetWarningHandler(warning_);
-  }
-  void check(const std::filesystem::path& file) const {
-    if (!first().empty()) failDamaged(file, first());
-  }
-
- private:
-  static std::string& first() {
-    static thread_local std::string text;
-    return text;
-  }
-  static void keep(const char*, const char* format, va_list values) {
-    char text[200];
-    std::vsnprintf(text, sizeof(text), format, values);
-    if (first().empty()) first() = text;
-  }
-
-  const ItkTiffHandler error_, warning_;
-};
 
 /// Nothing for types of vectors, colours and complex numbers, and of more than 64 bits.
 std::optional<SampleType> niftiType(int code) {
@@ -191,11 +151,9 @@ class ItkScan : public ScanReader {
     if (format_ == ItkFormat::MetaImage) payload = checkMetaHeader(path_);
     if (format_ == ItkFormat::Nifti) checkNiftiHeader(path_);
     quietItk(path_, [&] {
-      const TiffErrors errors;
       io_->SetFileName(path_.string());
       if (!io_->CanReadFile(path_.string().c_str())) failDamaged(path_, fmt::format("it is no {} file", nameOf(format)));
       io_->ReadImageInformation();
-      errors.check(path_);
     });
     header_ = headerOf(path_, *io_);
     header_.format = nameOf(format);
@@ -206,13 +164,13 @@ class ItkScan : public ScanReader {
                    payload.isCompressed);
   }
 
-  void read(int timeStep, const SampleSink& sink, const Progress& progress) override {
-    if (format_ == ItkFormat::Nifti) return readNiftiValues(path_, header_, timeStep, sink, progress);
+  void read(const ScanPart& part, const SampleSink& sink, const Progress& progress) override {
+    if (format_ == ItkFormat::Nifti) return readNiftiValues(path_, header_, part.timeStep, sink, progress);
     if (progress) progress("reading the scan", 0.0);
     wantAll(*io_);
     const auto buffer = std::make_unique_for_overwrite<std::byte[]>(bytesToRead());
     readWhole({buffer.get(), bytesToRead()});
-    const std::uint64_t step = header_.samples() * bytesOf(header_.type) * std::uint64_t(timeStep);
+    const std::uint64_t step = header_.samples() * bytesOf(header_.type) * std::uint64_t(part.timeStep);
     sink({.samples = buffer.get() + step, .type = header_.type, .first = glm::ivec3(0), .extent = header_.dimensions});
   }
 
@@ -234,11 +192,7 @@ class ItkScan : public ScanReader {
     const std::span<std::byte> last = bytes.last(bytesOf(header_.type));
     const auto readOver = [&](std::byte before) {
       std::ranges::fill(last, before);
-      quietItk(path_, [&] {
-        const TiffErrors errors;
-        io_->Read(bytes.data());
-        errors.check(path_);
-      });
+      quietItk(path_, [&] { io_->Read(bytes.data()); });
       return std::vector<std::byte>(last.begin(), last.end());
     };
     constexpr std::byte kOne{0xa5}, kOther{0x5a};

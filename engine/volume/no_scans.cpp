@@ -1,4 +1,4 @@
-// What takes the place of the readers of scans in a build without them (FREEVOXELS_SCANS).
+// What takes the place of the readers of scans that are not ITK's in a build without them (FREEVOXELS_SCANS).
 #include "engine/volume/scan_reader.h"
 
 namespace freevoxels {
@@ -14,11 +14,11 @@ namespace {
 
 }  // namespace
 
-std::unique_ptr<ScanReader> openItkScan(const std::filesystem::path& file, ItkFormat) {
+std::unique_ptr<ScanReader> openNgffScan(const std::filesystem::path& file, const ScanRequest&) {
   refuse(file);
 }
 
-std::unique_ptr<ScanReader> openDicomScan(const std::filesystem::path& file, const std::optional<std::string>&) {
+std::unique_ptr<ScanReader> openTiffScan(const std::filesystem::path& file) {
   refuse(file);
 }
 

@@ -20,7 +20,7 @@ class RawScan : public ScanReader {
            Parameter("raw", rawLayoutText(layout)), needed);
   }
 
-  void read(int, const SampleSink& sink, const Progress& progress) override {
+  void read(const ScanPart&, const SampleSink& sink, const Progress& progress) override {
     const glm::ivec3 size = layout_.dimensions;
     const std::uint64_t slice = bytesOfSlice();
     const int slices = slicesAtOnce();

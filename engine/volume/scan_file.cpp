@@ -1,8 +1,11 @@
 #include "engine/volume/scan_file.h"
 
+#include <fmt/ranges.h>
+
 #include <algorithm>
 #include <array>
 #include <cctype>
+#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <new>
@@ -23,29 +26,28 @@ namespace {
 namespace fs = std::filesystem;
 
 /// How a file is read. Unknown are those of formats that are refused.
-enum class Format { Nrrd, MetaImage, Nifti, Tiff, Vtk, Vti, Dicom, Raw, Unknown };
+enum class Format { Nrrd, MetaImage, Nifti, Tiff, Vtk, Vti, Dicom, Raw, Zarr, Unknown };
 
 struct Ending {
   std::string_view ending;
   Format format;
 };
-constexpr std::array<Ending, 14> kEndings{{{".nii", Format::Nifti},
-                                           {".nii.gz", Format::Nifti},
-                                           {".nrrd", Format::Nrrd},
-                                           {".nhdr", Format::Nrrd},
-                                           {".mha", Format::MetaImage},
-                                           {".mhd", Format::MetaImage},
-                                           {".vti", Format::Vti},
-                                           {".vtk", Format::Vtk},
-                                           {".dcm", Format::Dicom},
-                                           {".ima", Format::Dicom},
-                                           {".tif", Format::Tiff},
-                                           {".tiff", Format::Tiff},
-                                           {".raw", Format::Raw},
-                                           {".mrc", Format::Unknown}}};
+/// Of endings that end alike, the longest comes first.
+constexpr std::array<Ending, 22> kEndings{
+    {{".ome.zarr.zip", Format::Zarr}, {".zarr.zip", Format::Zarr}, {".ome.zarr", Format::Zarr}, {".zarr", Format::Zarr},
+     {".ozx", Format::Zarr},          {".zip", Format::Zarr},      {".ome.tif", Format::Tiff},  {".ome.tiff", Format::Tiff},
+     {".nii", Format::Nifti},         {".nii.gz", Format::Nifti},  {".nrrd", Format::Nrrd},     {".nhdr", Format::Nrrd},
+     {".mha", Format::MetaImage},     {".mhd", Format::MetaImage}, {".vti", Format::Vti},       {".vtk", Format::Vtk},
+     {".dcm", Format::Dicom},         {".ima", Format::Dicom},     {".tif", Format::Tiff},      {".tiff", Format::Tiff},
+     {".raw", Format::Raw},           {".mrc", Format::Unknown}}};
+
+/// "ct" of "scans/ct/".
+std::string fileNameOf(const fs::path& file) {
+  return (file.has_filename() ? file : file.parent_path()).filename().string();
+}
 
 std::string lowerName(const fs::path& file) {
-  std::string name = file.filename().string();
+  std::string name = fileNameOf(file);
   std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
   return name;
 }
@@ -67,8 +69,26 @@ bool hasDicomSignature(const fs::path& file) {
   return stream && std::string_view(bytes + kPreamble, 4) == "DICM";
 }
 
+/// Of a folder: a Zarr hierarchy, slices of TIFF where none of its files is of DICOM, or a series of DICOM.
+Format formatOfFolder(const fs::path& folder) {
+  std::error_code error;
+  for (const char* metadata : {"zarr.json", ".zattrs", ".zgroup"})
+    if (fs::exists(folder / metadata, error)) return Format::Zarr;
+  bool hasTiff = false;
+  for (const fs::directory_entry& entry : fs::directory_iterator(folder, error)) {
+    const Ending* const ending = endingOf(entry.path());
+    if (ending != nullptr && ending->format == Format::Tiff)
+      hasTiff = true;
+    else if ((ending != nullptr && ending->format == Format::Dicom) || hasDicomSignature(entry.path()))
+      return Format::Dicom;
+  }
+  return hasTiff ? Format::Tiff : Format::Dicom;
+}
+
 Format formatOf(const fs::path& file, const ScanRequest& request) {
   if (request.raw) return Format::Raw;
+  std::error_code error;
+  if (fs::is_directory(file, error)) return formatOfFolder(file);
   if (const Ending* ending = endingOf(file)) return ending->format;
   return Format::Dicom;
 }
@@ -82,7 +102,7 @@ std::unique_ptr<ScanReader> open(const fs::path& file, Format format, const Scan
     case Format::Nifti:
       return openItkScan(file, ItkFormat::Nifti);
     case Format::Tiff:
-      return openItkScan(file, ItkFormat::Tiff);
+      return openTiffScan(file);
     case Format::Vtk:
       return openItkScan(file, ItkFormat::Vtk);
     case Format::Vti:
@@ -96,6 +116,8 @@ std::unique_ptr<ScanReader> open(const fs::path& file, Format format, const Scan
              file.string(), Parameter("raw", "WxHxD,TYPE"));
       return openRawScan(file, *layout);
     }
+    case Format::Zarr:
+      return openNgffScan(file, request);
     case Format::Unknown:
       break;
   }
@@ -106,8 +128,65 @@ std::unique_ptr<ScanReader> open(const fs::path& file, Format format, const Scan
 void checkRequest(const fs::path& file, Format format, const ScanRequest& request) {
   if (request.series && format != Format::Dicom)
     fail(ErrorKind::Usage, "{} chooses among the series of a DICOM folder, and '{}' is none", Parameter("series"), file.string());
-  if (!request.array.empty() && format != Format::Vti)
+  const bool hasChannels = format == Format::Zarr || format == Format::Tiff;
+  if (!request.array.empty() && format != Format::Vti && !hasChannels)
     fail(ErrorKind::Usage, "{} chooses among several, and '{}' has one grid of values", Parameter("grid"), file.string());
+  if (request.pyramidLevel && format != Format::Zarr)
+    fail(ErrorKind::Usage, "{} chooses among the resolutions of OME-Zarr, and '{}' has one", Parameter("pyramid-level"), file.string());
+}
+
+/// "0 'DAPI', 1 'GFP'"
+std::string channelList(const ScanHeader& header) {
+  std::vector<std::string> words;
+  for (std::size_t i = 0; i < header.channels.size(); ++i)
+    words.push_back(header.channels[i].name.empty() ? fmt::format("{}", i) : fmt::format("{} '{}'", i, printable(header.channels[i].name)));
+  return fmt::format("{}", fmt::join(words, ", "));
+}
+
+/// The number of the channel with a name, or that has this number itself.
+int channelOf(const fs::path& file, const ScanHeader& header, const std::string& name, const Parameter& asked) {
+  const auto named = std::ranges::find(header.channels, name, &ScanChannel::name);
+  if (named != header.channels.end()) return int(named - header.channels.begin());
+  std::size_t number = 0;
+  const char* const end = name.data() + name.size();
+  const auto [stopped, error] = std::from_chars(name.data(), end, number);
+  if (error == std::errc() && stopped == end && number < std::max<std::size_t>(header.channels.size(), 1)) return int(number);
+  if (header.channels.empty()) fail(ErrorKind::Input, "{} is none of '{}', which has one channel, 0", asked, file.string());
+  fail(ErrorKind::Input, "{} is none of the channels of '{}': {}", asked, file.string(), channelList(header));
+}
+
+/// Channels that are drawn together, and their numbers in the file.
+struct ChosenChannels {
+  std::vector<ChannelStyle> styles;
+  std::vector<int> numbers;
+};
+
+/// Those that are asked for, or that the file shows, with the file's colours and windows where none are given. None where one is read
+/// alone.
+ChosenChannels chosenChannels(const fs::path& file, ScanHeader& header, const ScanRequest& request) {
+  ChosenChannels chosen;
+  if (!request.array.empty() || (request.channels.empty() && header.channels.empty())) return chosen;
+  const auto add = [&](ChannelStyle style, int number) {
+    if (!header.channels.empty()) {
+      const ScanChannel& described = header.channels[std::size_t(number)];
+      if (!style.color) style.color = described.color;
+      if (!style.window) style.window = described.window;
+    }
+    chosen.styles.push_back(std::move(style));
+    chosen.numbers.push_back(number);
+  };
+  for (const ChannelStyle& style : request.channels) add(style, channelOf(file, header, style.name, Parameter("channel", style.name)));
+  if (!request.channels.empty()) return chosen;
+  if (request.labels != nullptr)
+    fail(ErrorKind::Usage, "'{}' has channels, and labels are of one: choose it with {}: {}", file.string(), Parameter("grid", "NAME"),
+         channelList(header));
+  const bool showsSome = std::ranges::any_of(header.channels, &ScanChannel::isShown);
+  for (std::size_t i = 0; i < header.channels.size() && chosen.numbers.size() < kMostChannels; ++i)
+    if (header.channels[i].isShown || !showsSome)
+      add({.name = header.channels[i].name.empty() ? fmt::format("{}", i) : header.channels[i].name}, int(i));
+  header.remarks.push_back(fmt::format("{} of its {} channels are drawn ({} chooses others, {} draws one as a scan)", chosen.numbers.size(),
+                                       header.channels.size(), Parameter("channel"), Parameter("grid")));
+  return chosen;
 }
 
 /// The sides of the box that the header says, with the request's spacing.
@@ -144,7 +223,7 @@ Opened openScan(const fs::path& file, const ScanRequest& request) {
   std::error_code error;
   const bool isFolder = fs::is_directory(file, error);
   if (!isFolder) checkInputFile("scan", file);
-  const Format format = isFolder ? Format::Dicom : formatOf(file, request);
+  const Format format = formatOf(file, request);
   checkRequest(file, format, request);
   Opened opened{.reader = open(file, format, request), .header = {}};
   opened.header = opened.reader->header();
@@ -157,10 +236,12 @@ Opened openScan(const fs::path& file, const ScanRequest& request) {
 }
 
 /// Fails before memory is taken.
-void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximumVoxels) {
+void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximumVoxels, std::size_t channels) {
   const glm::ivec3 size = opened.header.dimensions;
   const std::uint64_t voxels = opened.header.samples();
-  const std::uint64_t bytes = ScalarBricks::bytesOf(voxels / std::tuple_size_v<ScalarBricks::Brick>) + opened.reader->bytesToRead();
+  constexpr std::size_t kSums = 4;  // of channels: densities and colours
+  const std::uint64_t boxes = channels == 0 ? 1 : channels + kSums;
+  const std::uint64_t bytes = boxes * ScalarBricks::bytesOf(voxels / std::tuple_size_v<ScalarBricks::Brick>) + opened.reader->bytesToRead();
   if (voxels > maximumVoxels)
     fail(ErrorKind::OutOfMemory,
          "'{}' is too large: its {} x {} x {} voxels are more than the {} that are possible here; resample or crop it", file.string(),
@@ -208,7 +289,7 @@ std::span<const std::string_view> scanEndings() {
 std::string stemOf(const fs::path& file) {
   const Ending* const ending = endingOf(file);
   if (!ending) return (file.has_filename() ? file : file.parent_path()).stem().string();
-  const std::string name = file.filename().string();
+  const std::string name = fileNameOf(file);
   return name.substr(0, name.size() - ending->ending.size());
 }
 
@@ -216,16 +297,39 @@ ScanHeader readScanHeader(const fs::path& file, const ScanRequest& request) {
   return guarded(file, [&] { return openScan(file, request).header; });
 }
 
+std::vector<ChannelStyle> scanChannels(const fs::path& file, const ScanRequest& request) {
+  return guarded(file, [&] {
+    Opened opened = openScan(file, request);
+    return chosenChannels(file, opened.header, request).styles;
+  });
+}
+
 Volume readScan(const fs::path& file, const ScanRequest& request) {
   return guarded(file, [&] {
-    const Opened opened = openScan(file, request);
-    checkSize(file, opened, request.maximumVoxels);
-    ScanVoxels voxels(opened.header.dimensions);
-    opened.reader->read(
-        request.timeStep.value_or(0), [&](const SampleBlock& block) { voxels.put(block); }, request.progress);
-    const std::string name = (file.has_filename() ? file : file.parent_path()).filename().string();  // "ct" of "scans/ct/"
-    Volume volume = volumeOfScalars(voxels.take(), opened.header.indexToWorld, request.noData,
-                                    opened.header.array.empty() ? name : name + " " + opened.header.array, request.labels);
+    Opened opened = openScan(file, request);
+    ScanHeader& header = opened.header;
+    const ChosenChannels chosen = chosenChannels(file, header, request);
+    checkSize(file, opened, request.maximumVoxels, chosen.numbers.size());
+    const auto read = [&](int channel) {
+      ScanVoxels voxels(header.dimensions);
+      opened.reader->read(
+          {.timeStep = request.timeStep.value_or(0), .channel = channel}, [&](const SampleBlock& block) { voxels.put(block); },
+          request.progress);
+      return voxels.take();
+    };
+    const std::string name = fileNameOf(file);
+    Volume volume;
+    if (chosen.numbers.empty()) {
+      const int channel = header.channels.empty() ? 0 : channelOf(file, header, request.array, Parameter("grid", request.array));
+      const std::string array = header.channels.empty() ? header.array : request.array;
+      volume =
+          volumeOfScalars(read(channel), header.indexToWorld, request.noData, array.empty() ? name : name + " " + array, request.labels);
+    } else {
+      std::vector<ScalarBricks> values;
+      for (const int channel : chosen.numbers) values.push_back(read(channel));
+      volume = volumeOfChannels(std::move(values), header.indexToWorld, chosen.styles, name);
+    }
+    volume.remarks.insert(volume.remarks.begin(), header.remarks.begin(), header.remarks.end());
     volume.up = {0.0, 0.0, 1.0};
     volume.upReason = "it is a scan";
     return volume;

@@ -2,6 +2,7 @@
 // Scans: files that hold one box of samples, such as those of medicine, microscopy and simulation. Which formats there are is said here,
 // and nowhere else: isScanFile(), scanEndings() and readScan() are all that the rest of the program knows of them.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "engine/core/stages.h"
+#include "engine/volume/channels.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/raw_layout.h"
 #include "engine/volume/sample_type.h"
@@ -22,7 +24,12 @@ namespace freevoxels {
 
 /// What is read of a file, and how.
 struct ScanRequest {
-  std::string array;                  ///< of a file with several arrays; empty: that which the file calls its scalars, or the only one
+  /// Of a file with several arrays, else that which the file calls its scalars, or the only one; of one with channels the name or number
+  /// of the one that is read alone.
+  std::string array;
+  std::vector<ChannelStyle> channels;  ///< of a file with channels, those that are drawn together; none: those that the file shows
+  std::optional<int> pyramidLevel;     ///< of a file with several resolutions, from 0, the finest; else by imageEdge and memory
+  int imageEdge = 0;                   ///< pixels along the longer edge of the image; 0: unknown
   std::optional<RawLayout> raw;       ///< the file has values without a header; else the layout of its name (layoutOfName)
   std::optional<std::string> series;  ///< UID of a DICOM series; else the only one of the folder, or that of the file
   std::optional<int> timeStep;        ///< of a file with several, from 0; else the first
@@ -31,6 +38,16 @@ struct ScanRequest {
   const Labels* labels = nullptr;     ///< how the values are drawn if they are labels; else null
   std::uint64_t maximumVoxels = 0;    ///< of the box
   Progress progress = {};             ///< may abandon it
+};
+
+/// One of several values at the same voxels, as a file describes it.
+struct ScanChannel {
+  std::string name;                            ///< may be empty
+  std::optional<glm::vec3> color;              ///< linear Rec.709, 0..1
+  std::optional<std::array<float, 2>> window;  ///< of the values, as ChannelStyle::window
+  bool isShown = true;                         ///< whether the file says that it is drawn
+
+  bool operator==(const ScanChannel&) const = default;
 };
 
 /// What a scan's header says.
@@ -43,6 +60,10 @@ struct ScanHeader {
   /// From voxels to the world: LPS millimetres, x towards the patient's left, y towards the back, z towards the head.
   glm::dmat4 indexToWorld{1.0};
   std::optional<glm::dvec2> rescale;  ///< slope and intercept, which the values that are read have been multiplied by and added to
+  std::vector<ScanChannel> channels;  ///< of a file with several
+  std::vector<glm::ivec3> levels;     ///< dimensions of a file with several resolutions, the finest first
+  int level = 0;                      ///< which of them `dimensions` and `indexToWorld` are of
+  std::vector<std::string> remarks;   ///< what was chosen, as Volume::remarks
 
   std::uint64_t samples() const { return std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z); }
 };
@@ -58,6 +79,9 @@ std::string stemOf(const std::filesystem::path& file);
 
 /// Fails as readScan does, but reads no values.
 ScanHeader readScanHeader(const std::filesystem::path& file, const ScanRequest& request);
+/// How the channels are drawn that readScan mixes, with the colours and windows of the file where the request gives none; none where a
+/// single channel is read.
+std::vector<ChannelStyle> scanChannels(const std::filesystem::path& file, const ScanRequest& request);
 /// Reads the samples as floats, in which all values of 8 and 16 bits are exact. Up is +z, towards the head. Fails with ErrorKind::Input for
 /// a file that is missing, damaged, shorter than its header says, of vectors or colours, or has several series of which none is chosen;
 /// with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels` or this machine's memory, before allocating it; and with ErrorKind::Usage

@@ -15,13 +15,18 @@
 
 namespace freevoxels {
 
+/// Which samples of a file are read.
+struct ScanPart {
+  int timeStep = 0, channel = 0;
+};
+
 /// A scan of which the header was read and checked.
 class ScanReader {
  public:
   virtual ~ScanReader() = default;
   const ScanHeader& header() const { return header_; }
-  /// Hands out all samples of a time step, rescaled, in blocks. Fails with ErrorKind::Input where the file is damaged.
-  virtual void read(int timeStep, const SampleSink& sink, const Progress& progress) = 0;
+  /// Hands out all samples of a part, rescaled, in blocks, by several threads. Fails with ErrorKind::Input where the file is damaged.
+  virtual void read(const ScanPart& part, const SampleSink& sink, const Progress& progress) = 0;
   /// Host memory that read() needs besides the sink's.
   virtual std::uint64_t bytesToRead() const = 0;
 
@@ -33,8 +38,13 @@ std::unique_ptr<ScanReader> openRawScan(const std::filesystem::path& file, const
 /// `array`: as in ScanRequest.
 std::unique_ptr<ScanReader> openVtiScan(const std::filesystem::path& file, const std::string& array);
 
+/// A hierarchy of Zarr arrays in a folder or in a zip archive. `request` has the level or what it is chosen by.
+std::unique_ptr<ScanReader> openNgffScan(const std::filesystem::path& file, const ScanRequest& request);
+/// The pages of a file, or the files of a folder.
+std::unique_ptr<ScanReader> openTiffScan(const std::filesystem::path& file);
+
 /// The formats of single files that ITK reads.
-enum class ItkFormat { Nrrd, MetaImage, Nifti, Tiff, Vtk };
+enum class ItkFormat { Nrrd, MetaImage, Nifti, Vtk };
 std::unique_ptr<ScanReader> openItkScan(const std::filesystem::path& file, ItkFormat format);
 /// A DICOM file, the series that it is of, or a series of a folder.
 std::unique_ptr<ScanReader> openDicomScan(const std::filesystem::path& file, const std::optional<std::string>& series);

@@ -90,6 +90,7 @@ struct ReadRequest {
   std::optional<NoData> noData = std::nullopt;     ///< of which voxels hold no data; else the padding of a scan (scan.h) does
   LabelRequest labels = {};
   std::vector<ChannelStyle> channels = {};         ///< if there are any, these grids are drawn in place of `grid` and `more` (channels.h)
+  int imageEdge = 0;                               ///< of a scan, as in ScanRequest
   Progress progress = {};                          ///< may abandon it
 };
 

@@ -19,13 +19,14 @@ void checkTransform(const glm::dmat4& indexToWorld, const std::string& source) {
 
 }  // namespace
 
-Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& indexToWorld, const std::vector<ChannelStyle>& channels) {
-  checkTransform(indexToWorld, "the array");
-  Volume volume{.source = "the array", .dimensions = values.front().dimensions(), .indexToWorld = indexToWorld};
+Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& indexToWorld, const std::vector<ChannelStyle>& channels,
+                        const std::string& source) {
+  checkTransform(indexToWorld, source);
+  Volume volume{.source = source, .dimensions = values.front().dimensions(), .indexToWorld = indexToWorld};
   normaliseWorld(volume);
   mixChannels(volume, channels, std::move(values));
   if (volume.activeVoxels == 0 && !(volume.temperature && volume.temperature->activeVoxels > 0))
-    fail(ErrorKind::Input, "the channels of the array hold nothing above the beginning of their windows: give them other windows");
+    fail(ErrorKind::Input, "the channels of {} hold nothing above the beginning of their windows: give them other windows", source);
   return volume;
 }
 

@@ -25,6 +25,7 @@ Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, con
                        const std::string& source = "the array", const Labels* labels = nullptr);
 
 /// The same of channels (channels.h), of whose boxes of equal sizes `values` has the scalars.
-Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& indexToWorld, const std::vector<ChannelStyle>& channels);
+Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& indexToWorld, const std::vector<ChannelStyle>& channels,
+                        const std::string& source = "the array");
 
 }  // namespace freevoxels

@@ -170,7 +170,7 @@ class VtiScan : public ScanReader {
     takeHeader();
   }
 
-  void read(int, const SampleSink& sink, const Progress& progress) override {
+  void read(const ScanPart&, const SampleSink& sink, const Progress& progress) override {
     for (const Piece& piece : pieces_) {
       if (progress) progress("reading the scan", 0.0);
       const std::string_view format = piece.array.attribute("format").as_string();

@@ -79,6 +79,7 @@ SceneDescription others(const TemporaryFolder& folder) {
   scene.input.series = "1.2.840.5";
   scene.input.timeStep = 3;
   scene.input.spacing = glm::dvec3(0.5, 0.25, 3.0);
+  scene.input.pyramidLevel = 2;
   scene.camera.holdout = (folder / "depth.exr").string();
   scene.classification.transferFunction = R"({"opacity":[[0,0],[1,0.5]]})";
   scene.emission.emission = true;

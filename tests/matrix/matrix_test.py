@@ -69,6 +69,21 @@ def dicom_slice(values, number, series):
     return bytes(128) + b"DICM" + element(2, 0, "UL", struct.pack("<I", len(meta))) + meta + data
 
 
+def write_zarr(folder, values):
+    """An OME-Zarr of one chunk, with two channels."""
+    chunk = folder / "0/0/0/0/0"
+    chunk.parent.mkdir(parents=True)
+    chunk.write_bytes(values.tobytes())
+    array = {"zarr_format": 2, "shape": values.shape, "chunks": values.shape, "dtype": "<u2", "compressor": None, "fill_value": 0, "order": "C",
+             "filters": None, "dimension_separator": "/"}
+    (folder / "0/.zarray").write_text(json.dumps(array))
+    axes = [{"name": "c", "type": "channel"}] + [{"name": name, "type": "space", "unit": "millimeter"} for name in "zyx"]
+    scale = {"type": "scale", "scale": [1, 2, 1, 1.5]}
+    image = {"version": "0.4", "axes": axes, "datasets": [{"path": "0", "coordinateTransformations": [scale]}]}
+    channels = [{"label": "a", "color": "FF8000", "window": {"start": 100, "end": 900}}, {"label": "b", "color": "0000FF", "window": {"start": 300, "end": 1000}}]
+    (folder / ".zattrs").write_text(json.dumps({"multiscales": [image], "omero": {"channels": channels}}))
+
+
 def write_scan(file, shape):
     values = 1000 * blob(shape)
     if file.suffix == ".raw":
@@ -85,6 +100,8 @@ def write_scan(file, shape):
         header[76:96], header[108:120] = struct.pack("<5f", 1, 1, 1, 1, 1), struct.pack("<3f", 352, 2, -10)
         header[344:347] = b"n+1"
         file.write_bytes(bytes(header) + values.tobytes() + values[::-1].tobytes())
+    elif file.suffix == ".zarr":
+        write_zarr(file, np.stack([values, 1000 - values]).astype("<u2"))
     else:
         file.mkdir()
         for series, step in (("1.2.3", 1), ("1.2.4", -1)):

@@ -35,6 +35,7 @@ class _Part(TypedDict, total=False):  # which part of a file is read
     raw: str
     series: str
     time_step: int
+    pyramid_level: int
     input: _Section
 
 class _Input(_Part, total=False):

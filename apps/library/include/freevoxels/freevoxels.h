@@ -110,10 +110,10 @@ struct Placement {
 class FREEVOXELS_API Volume {
  public:
   /// Reads an OpenVDB file or a scan, a folder of DICOM files included, or makes "procedural:NAME"; if `file` is empty, that of the scene's
-  /// key "volume". `scene` names the grid, the resolution and what to read of a scan (spacing, raw, series, time-step), and has the keys of
-  /// later frames: emission, temperature-grid and albedo-grid decide which further grids are read. A volume that the device cannot hold is
-  /// drawn piece by piece. The values of a baked volume are read when it is drawn, from the level of detail that the frame needs; its file
-  /// must not be changed meanwhile.
+  /// key "volume". `scene` names the grid, the resolution and what to read of a scan (spacing, raw, series, time-step, pyramid-level), and
+  /// has the keys of later frames: emission, temperature-grid and albedo-grid decide which further grids are read. A volume that the device
+  /// cannot hold is drawn piece by piece. The values of a baked volume are read when it is drawn, from the level of detail that the frame
+  /// needs; its file must not be changed meanwhile.
   static Volume open(const Context& context, const std::filesystem::path& file, std::string_view scene = "{}");
   /// The same for renderers of any device, none of which is opened here.
   static Volume open(const std::filesystem::path& file, std::string_view scene = "{}");
