@@ -79,6 +79,14 @@ void bakeShared(const SharedVolume& volume, const std::string& file, const Json&
   });
 }
 
+void convertFile(const std::string& volume, const std::string& file, const Json& keywords, const ConvertRemarks& remarks,
+                 const Progress& progress) {
+  const InputDescription input = KeywordOptions({withVolume(keywords, volume)}, {"input", "scene"}).scene.input;
+  if (input.volume.empty()) fail(ErrorKind::Usage, "there is no volume to convert: name a file or procedural:NAME");
+  checkConvert(input, file);
+  abandonable(progress, [&](const Progress& kept) { convertVolume(input, file, remarks, kept); });
+}
+
 nlohmann::ordered_json infoOf(const std::string& volume, const Json& keywords) {
   Json given = withVolume(keywords, volume);
   const bool check = takeFlag(given, "check");

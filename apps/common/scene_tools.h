@@ -7,6 +7,7 @@
 #include <string>
 
 #include "apps/common/bake.h"
+#include "apps/common/convert.h"
 #include "apps/common/shared_volume.h"
 
 namespace freevoxels {
@@ -17,6 +18,10 @@ void bakeFile(const std::string& volume, const std::string& file, const nlohmann
               const Progress& progress);
 /// Bakes a volume that is open, of a baked file its finest level.
 void bakeShared(const SharedVolume& volume, const std::string& file, const nlohmann::json& keywords, const Progress& progress);
+
+/// As `freevoxels convert`. `keywords` are those of the section "input".
+void convertFile(const std::string& volume, const std::string& file, const nlohmann::json& keywords, const ConvertRemarks& remarks,
+                 const Progress& progress);
 
 /// What `freevoxels info --json` says of a volume. `keywords` are those of the section "input", and "check".
 nlohmann::ordered_json infoOf(const std::string& volume, const nlohmann::json& keywords);

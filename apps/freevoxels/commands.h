@@ -29,6 +29,19 @@ class CompareCommand {
   bool json_ = false;
 };
 
+/// freevoxels convert IN OUT
+class ConvertCommand {
+ public:
+  void add(CLI::App& app);
+
+ private:
+  void run();
+
+  SceneOptions scene_;  ///< the volume
+  std::string file_;
+  MessageOptions messages_;
+};
+
 /// freevoxels devices
 class DevicesCommand {
  public:

@@ -1,4 +1,4 @@
-// The command-line program: freevoxels render | turntable | merge | oracle | compare | info | generate | bake | devices.
+// The command-line program: freevoxels render | turntable | merge | oracle | compare | info | convert | generate | bake | devices.
 
 #include <CLI/CLI.hpp>
 
@@ -16,6 +16,7 @@ int main(int argc, char** argv) {
   freevoxels::OracleCommand oracle;
   freevoxels::CompareCommand compare;
   freevoxels::InfoCommand info;
+  freevoxels::ConvertCommand convert;
   freevoxels::GenerateCommand generate;
   freevoxels::BakeCommand bake;
   freevoxels::DevicesCommand devices;
@@ -25,6 +26,7 @@ int main(int argc, char** argv) {
   oracle.add(app);
   compare.add(app);
   info.add(app);
+  convert.add(app);
   generate.add(app);
   bake.add(app);
   devices.add(app);

@@ -40,6 +40,10 @@ void bake(const Volume& volume, const std::filesystem::path& file, std::string_v
   translated([&] { bakeShared(*volume.state_->volume, file.string(), parseScene(scene), progress); });
 }
 
+void convert(const std::filesystem::path& volume, const std::filesystem::path& file, std::string_view scene, const Progress& progress) {
+  translated([&] { convertFile(volume.string(), file.string(), parseScene(scene), {}, progress); });
+}
+
 std::string info(const std::filesystem::path& volume, std::string_view scene) {
   return translated([&] { return infoOf(volume.string(), parseScene(scene)).dump(2, ' ', false, Json::error_handler_t::replace); });
 }

@@ -74,6 +74,18 @@ void bake(const py::object& volume, const py::object& file, const py::args& more
   bakeOpened(volumeFromArray(py::args(py::make_tuple(volume)), ofVolume), name, optionsOf(others), report);
 }
 
+void convert(const py::object& volume, const py::object& file, const py::args& more, const py::object& progress,
+             const py::kwargs& keywords) {
+  refuseMore(more, "convert()", "a volume and a file");
+  const std::string source = pathOf(volume).string(), name = pathOf(file).string();
+  const Json options = jsonOf(keywords);
+  const Progress callback = progressOf(progress);
+  const Progress report = progress.is_none() ? watchSignals() : callback;
+  const py::gil_scoped_release withoutGil;
+  convertFile(
+      source, name, options, [](const Volume& read) { warnInPython(read); }, report);
+}
+
 void merge(const py::object& parts, const py::object& images, const py::args& more, const py::kwargs& keywords) {
   refuseMore(more, "merge()", "the parts and the images");
   const std::vector<std::string> files = namesOf(parts, "parts"), written = namesOf(images, "images");
@@ -101,6 +113,11 @@ void addTools(py::module_& module) {
              "Classifies a volume once and writes a baked volume, whose name ends in .fvx: of a file, 'procedural:NAME', an array or a\n"
              "Volume, or None for that of a scene. Options are those of 'freevoxels bake', grid, resolution, classification and emission,\n"
              "and for an array those of Volume. Files too large for memory are read part by part. progress(stage, fraction) may abandon it.");
+  module.def("convert", &convert, "volume"_a, "file"_a, "progress"_a = py::none(),
+             "convert(volume, file, *, progress=None, **kwargs)\n--\n\n"
+             "Writes the values of a file or 'procedural:NAME', before they are classified, to a file that ends in .vdb, .nrrd, .nii or\n"
+             ".nii.gz, as 'freevoxels convert' does. Options: grid, resolution, raw, series, time_step, spacing, pyramid_level, no_data,\n"
+             "clip_box, clip_plane. progress(stage, fraction) may abandon reading.");
   module.def("merge", &merge, "parts"_a, "images"_a,
              "merge(parts, images, **kwargs)\n--\n\n"
              "Adds up the files of sums that 'freevoxels render --share I/N --sums' wrote, and writes the image, as 'freevoxels merge'\n"

@@ -116,6 +116,13 @@ std::optional<VdbExtent> extentOfVdb(const std::filesystem::path& file, const st
 /// Writes the active voxels as a float grid, a fog volume if Volume::isFog, and temperatures as a second grid. Atomic
 /// (core/atomic_file.h).
 void writeVdb(const std::filesystem::path& file, const Volume& volume, const std::string& gridName);
+/// Scalars that become a grid of a file.
+struct NamedScalars {
+  std::string name;
+  const Volume* volume = nullptr;
+};
+/// The same of the scalars of several volumes.
+void writeVdb(const std::filesystem::path& file, const std::vector<NamedScalars>& grids);
 /// The same of a field, of which no volume is made: 160 bytes for every 8^3 voxels that hold something are in memory, and their values in
 /// a temporary file without a name beside `file`. `progress` is told 1 before the file itself is written.
 void writeVdb(const std::filesystem::path& file, const ProceduralField& field, const std::string& gridName, const Progress& progress = {});

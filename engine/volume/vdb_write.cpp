@@ -231,6 +231,13 @@ void writeVdb(const std::filesystem::path& file, const Volume& volume, const std
   writeGrids(file, grids);
 }
 
+void writeVdb(const std::filesystem::path& file, const std::vector<NamedScalars>& grids) {
+  initialiseOpenVdb();
+  openvdb::GridCPtrVec made;
+  for (const NamedScalars& one : grids) made.push_back(makeGrid(*one.volume, one.volume->scalars, one.name));
+  writeGrids(file, made);
+}
+
 void writeVdb(const std::filesystem::path& file, const ProceduralField& field, const std::string& gridName, const Progress& progress) {
   initialiseOpenVdb();
   const Volume outline{.dimensions = field.dimensions(), .indexToWorld = field.indexToWorld(), .isFog = field.isFog()};

@@ -5,6 +5,8 @@
 #include "engine/image/image.h"
 #include "tests/commands/program_runner.h"
 #include "tests/volume/scan_fixture.h"
+#include "tests/volume/tiff_fixture.h"
+#include "tests/volume/zarr_fixture.h"
 
 namespace freevoxels::test {
 
@@ -43,7 +45,93 @@ class ScanCommand : public CommandTest {
   }
 };
 
+/// Two channels, left half red and right half green, of 16 x 16 x 8 voxels and of half as many along x and y.
+ZarrFiles cellsOf() {
+  ZarrFiles files;
+  ZarrFixture array{.shape = {2, 8, 16, 16}, .chunk = {1, 8, 16, 16}};
+  array.valueAt = [&](ZarrPlace v) { return (v[0] == 0) == (v[3] < array.shape[3] / 2) ? 1000 : 0; };
+  array.addSecond(files, "0");
+  array.shape = {2, 8, 8, 8};
+  array.addSecond(files, "1");
+  const nlohmann::json omero{{"channels", {omeroChannel("left", "FF0000", true, 0, 1000), omeroChannel("right", "00FF00", true, 0, 1000)}}};
+  addImage(files, {{"multiscales", multiscalesOf(2)}, {"omero", omero}});
+  return files;
+}
+
 }  // namespace
+
+TEST_F(ScanCommand, ChannelsOfOmeZarrAreDrawnInTheirColours) {
+  writeBytes(folder / "cells.ome.zarr.zip", zipOf(cellsOf(), true));
+  const auto drawn = [&](const std::string& options) {
+    expectSuccess(run("render @cells.ome.zarr.zip @a.exr --quiet --unlit --size 64 --orbit 0,0 " + options));
+    return readExr(folder / "a.exr");
+  };
+  const Image image = drawn("");
+  // Azimuth 0 looks at a patient's face: +x is on the right.
+  const glm::vec4 left = image.pixels[32 * kEdge + 20], right = image.pixels[32 * kEdge + 44];
+  EXPECT_GT(left.r, 0.1f);
+  EXPECT_NEAR(left.g, 0.0f, 1e-3f);
+  EXPECT_GT(right.g, 0.1f);
+  EXPECT_NEAR(right.r, 0.0f, 1e-3f);
+  EXPECT_EQ(drawn("--channel right").pixels[32 * kEdge + 20].a, 0.0f);
+  expectCleanRefusal("render @cells.ome.zarr.zip @b.png --size 16 --transfer-function {\"opacity\":[[0,0],[1,1]],\"color\":[[0,1,1,1]]}",
+                     ExitCode::Usage, "--grid");
+  expectCleanRefusal("render @cells.ome.zarr.zip @b.png --size 16 --grid middle", ExitCode::Input, "0 'left', 1 'right'");
+  const nlohmann::json json = nlohmann::json::parse(run("info @cells.ome.zarr.zip --json --pyramid-level 1").out);
+  EXPECT_EQ(json["scan"]["levels"], nlohmann::json({{16, 16, 8}, {8, 8, 8}}));
+  EXPECT_EQ(json["scan"]["level"], 1);
+  EXPECT_EQ(json["scan"]["channels"][1]["name"], "right");
+  EXPECT_EQ(json["grids"].size(), 2u);
+  EXPECT_NE(run("info @cells.ome.zarr.zip").out.find("channels    0 left, 1 right"), std::string::npos);
+}
+
+TEST_F(ScanCommand, LayersOfChannelsHaveTheColoursOfTheFile) {
+  writeBytes(folder / "cells.zip", zipOf(cellsOf(), false));
+  expectSuccess(run("render @cells.zip @a.exr --quiet --unlit --size 32 --channel left --channel right --aov channels"));
+  expectSuccess(run("render @cells.zip @b.exr --quiet --unlit --size 32"));
+  const Image layers = readExr(folder / "a.exr"), whole = readExr(folder / "b.exr");
+  for (std::size_t i = 0; i < whole.pixels.size(); ++i)
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(layers.pixels[i][c], whole.pixels[i][c], 2e-3f) << i;
+}
+
+TEST_F(ScanCommand, ConvertedVolumesAreTheSameImages) {
+  writeBytes(folder / "a.nii", niftiOf(placeOf("PSR")));
+  const Image image = draw("a.nii");
+  for (const char* name : {"b.nrrd", "b.nii.gz", "b.vdb"}) {
+    SCOPED_TRACE(name);
+    const ProgramResult result = run(std::string("convert @a.nii @") + name);
+    EXPECT_EQ(result.exitCode, 0) << result.err;
+    EXPECT_NE(result.out.find(name), std::string::npos);
+    const Image again = draw(name, "--up 0,0,1");
+    double worst = 0.0;
+    for (std::size_t i = 0; i < image.pixels.size(); ++i) worst = std::max(worst, double(std::abs(again.pixels[i].a - image.pixels[i].a)));
+    EXPECT_LT(worst, 2e-3);
+  }
+  expectCleanRefusal("convert @a.nii @c.obj", ExitCode::Usage, ".nrrd");
+  expectCleanRefusal("convert @a.nii @a.nii", ExitCode::Usage, "replaced");
+  expectCleanRefusal("convert @a.nii", ExitCode::Usage, "OUT");
+}
+
+TEST_F(ScanCommand, ChannelsBecomeGridsOfOpenVdb) {
+  writeBytes(folder / "cells.zip", zipOf(cellsOf(), true));
+  expectSuccess(run("convert @cells.zip @cells.vdb --quiet"));
+  const nlohmann::json json = nlohmann::json::parse(run("info @cells.vdb --json").out);
+  EXPECT_EQ(json["grids"][0]["name"], "left");
+  EXPECT_EQ(json["grids"][1]["name"], "right");
+  EXPECT_EQ(json["grids"][1]["range"][1], 1000.0);
+  expectCleanRefusal("convert @cells.zip @c.nrrd", ExitCode::Usage, "--grid");
+  expectSuccess(run("convert @cells.zip @right.nrrd --quiet --grid right --pyramid-level 1"));
+  EXPECT_EQ(nlohmann::json::parse(run("info @right.nrrd --json").out)["grids"][0]["dimensions"], nlohmann::json({8, 8, 8}));
+}
+
+TEST_F(ScanCommand, BakedScalarsAndProceduralVolumesAreConverted) {
+  expectSuccess(run("convert procedural:head @head.nrrd --quiet --resolution 16"));
+  expectSuccess(run("bake procedural:head @head.fvx --quiet --resolution 16 --keep-scalars"));
+  expectSuccess(run("convert @head.fvx @again.nrrd --quiet"));
+  EXPECT_EQ(readBytes(folder / "again.nrrd"), readBytes(folder / "head.nrrd"));
+  expectSuccess(run("bake procedural:head @fixed.fvx --quiet --resolution 16"));
+  expectCleanRefusal("convert @fixed.fvx @b.nrrd", ExitCode::Input, "--keep-scalars");
+}
 
 TEST_F(ScanCommand, TheFaceIsSeenUprightInEveryFormat) {
   writeBytes(folder / "a.nrrd", nrrdOf(placeOf("RAS")));

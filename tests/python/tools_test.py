@@ -1,4 +1,4 @@
-"""What the module does beside drawing: bake(), info(), merge(), devices(). Files and facts are those of the command line."""
+"""What the module does beside drawing: bake(), convert(), info(), merge(), devices(). Files and facts are those of the command line."""
 
 import json
 import os
@@ -63,6 +63,19 @@ class ToolsTest(unittest.TestCase):
             np.testing.assert_array_equal(freevoxels.render(self.folder / "again.fvx", size=(40, 30)), baked)
             freevoxels.bake(freevoxels.Volume(array, spacing=(1, 1, 2.5)), self.folder / "volume.fvx", keep_scalars=True)
             self.assertEqual((self.folder / "volume.fvx").read_bytes(), (self.folder / "array.fvx").read_bytes())
+
+    def test_converted_files_have_the_bytes_of_the_command_lines(self):
+        self.run_program("convert", "procedural:head", self.folder / "theirs.nrrd", "--resolution", "12x9x10")
+        stages = []
+        freevoxels.convert("procedural:head", self.folder / "ours.nrrd", resolution=(12, 9, 10), progress=lambda stage, fraction: stages.append(stage))
+        self.assertEqual((self.folder / "ours.nrrd").read_bytes(), (self.folder / "theirs.nrrd").read_bytes())
+        self.assertIn("writing the file", stages)
+        freevoxels.convert(self.folder / "ours.nrrd", self.folder / "ours.nii.gz", no_data="none")
+        self.assertEqual(freevoxels.Volume.open(self.folder / "ours.nii.gz").shape, (10, 9, 12))
+        with self.assertRaisesRegex(freevoxels.UsageError, ".nrrd"):
+            freevoxels.convert("procedural:head", self.folder / "a.png")
+        with self.assertRaisesRegex(freevoxels.UsageError, "no volume to convert"):
+            freevoxels.convert("", self.folder / "a.nrrd")
 
     def test_parts_are_merged(self):
         for index in (0, 1, 2):

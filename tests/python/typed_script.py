@@ -58,6 +58,7 @@ def draw(folder: pathlib.Path) -> None:
     found: list[dict[str, Any]] = freevoxels.devices()
     assert facts["levels"] and found
     try:
+        freevoxels.convert("procedural:cloud", folder / "cloud.nrrd", resolution=8, progress=lambda stage, fraction: None)
         freevoxels.merge([folder / "array.fvx"], folder / "merged.png", exposure=1)
     except freevoxels.UsageError:
         pass

@@ -281,6 +281,11 @@ FREEVOXELS_API void bake(const std::filesystem::path& volume, const std::filesys
 /// Bakes a volume that is open. `scene` has no keys of the volume.
 FREEVOXELS_API void bake(const Volume& volume, const std::filesystem::path& file, std::string_view scene = "{}", const Progress& progress = {});
 
+/// Writes the values of a volume, before they are classified, as `freevoxels convert` does: `file` ends in .vdb, .nrrd, .nii or .nii.gz.
+/// `scene` has the keys of the section "input". `progress` may abandon reading by an exception, which is passed on.
+FREEVOXELS_API void convert(const std::filesystem::path& volume, const std::filesystem::path& file, std::string_view scene = "{}",
+                            const Progress& progress = {});
+
 /// What a file or "procedural:NAME" holds: the text of `freevoxels info --json`. `scene` has the key "resolution" and those of scans, and
 /// "check": true reads all of a baked volume and fails with ErrorKind::Input where anything is damaged.
 FREEVOXELS_API std::string info(const std::filesystem::path& volume, std::string_view scene = "{}");
