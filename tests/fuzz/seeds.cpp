@@ -1,4 +1,5 @@
-// Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json,fvx}.
+// Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json,fvx}, and of
+// scans into FOLDER/{vti,zarr,tiff,text}.
 
 #include <ImfChannelList.h>
 #include <ImfFrameBuffer.h>
@@ -16,6 +17,8 @@
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/openvdb_trees.h"
 #include "engine/volume/vdb_grids.h"
+#include "tests/volume/tiff_fixture.h"
+#include "tests/volume/zarr_fixture.h"
 
 namespace {
 
@@ -157,13 +160,80 @@ void writeBakedVolumes(const fs::path& folder) {
   for (const glm::ivec3 size : kBakedSizes) writeBakedVolume(folder, size);
 }
 
+void writeFile(const fs::path& file, const std::string& bytes) {
+  std::ofstream(file, std::ios::binary) << bytes;
+}
+
+void writeHierarchies(const fs::path& folder) {
+  using nlohmann::json;
+  test::ZarrFixture array{.shape = {2, 3, 4, 5}, .chunk = {1, 2, 4, 3}};
+  const json omero{{"channels", {test::omeroChannel("a", "FF0000", true, 0, 100), test::omeroChannel("b", "00FF00", true, 5, 50)}}};
+  const auto write = [&](const std::string& name, test::ZarrFiles files, bool isThird, bool isDeflated) {
+    json attributes{{"version", isThird ? "0.5" : "0.4"}, {"multiscales", test::multiscalesOf(1)}, {"omero", omero}};
+    test::addImage(files, attributes, isThird);
+    writeFile(folder / (name + ".zip"), test::zipOf(files, isDeflated));
+  };
+  test::ZarrFiles files;
+  array.addSecond(files, "0");
+  write("raw", files, false, false);
+  write("deflated", files, false, true);
+  array.pack = [](const std::string& bytes) { return test::bloscOf(bytes, "lz4", BLOSC_SHUFFLE); };
+  array.addSecond(files, "0", {{"compressor", {{"id", "blosc"}}}});
+  write("blosc", files, false, false);
+  files.clear();
+  array.pack = test::zstdOf;
+  const json bytes{{"name", "bytes"}, {"configuration", {{"endian", "little"}}}};
+  array.addThird(files, "0", {bytes, {{"name", "zstd"}}}, {1, 2, 1, 2});
+  write("shards", files, true, false);
+  files.clear();
+  array.pack = [](const std::string& plain) { return test::deflateOf(plain, 31); };
+  array.addThird(files, "0", {bytes, {{"name", "gzip"}}});
+  write("gzip", files, true, false);
+}
+
+constexpr const char* kHyperstack = "ImageJ=1.54f\nimages=12\nchannels=2\nslices=3\nframes=2\nhyperstack=true\nunit=um\nspacing=0.5\n";
+
+void writeStacks(const fs::path& tiff, const fs::path& text) {
+  const std::string ome = test::omeXml("SizeZ=\"3\" SizeC=\"2\" SizeT=\"1\" DimensionOrder=\"XYZCT\" PhysicalSizeX=\"0.25\"",
+                                       "<Channel Name=\"a\" Color=\"65535\"/><Channel Name=\"b\"/><TiffData IFD=\"0\" PlaneCount=\"6\"/>");
+  writeFile(tiff / "hyperstack.tif", test::TiffFixture{.pages = 12, .description = kHyperstack}.bytes());
+  writeFile(tiff / "behind.tif", test::TiffFixture{.description = kHyperstack, .images = 12}.bytes());
+  writeFile(tiff / "ome.tif", test::TiffFixture{.pages = 6, .description = ome}.bytes());
+  writeFile(text / "imagej", kHyperstack);
+  writeFile(text / "ome", ome);
+  writeFile(text / "name", "a_13x9x10_uint16.raw");
+  writeFile(text / "layout", "13x9x10,i16,big,header=512");
+}
+
+void writeVtiImages(const fs::path& folder) {
+  const std::string head = "<?xml version=\"1.0\"?><VTKFile type=\"ImageData\" byte_order=\"LittleEndian\"";
+  const std::string image =
+      "><ImageData WholeExtent=\"0 2 0 1 0 1\" Origin=\"0 0 0\" Spacing=\"1 1 2\"><Piece Extent=\"0 2 0 1 0 1\"><PointData Scalars=\"a\">"
+      "<DataArray type=\"UInt16\" Name=\"a\" ";
+  const std::string foot = "</DataArray></PointData></Piece></ImageData>";
+  writeFile(folder / "text.vti", head + image + "format=\"ascii\">1 2 3 4 5 6 7 8 9 10 11 12" + foot + "</VTKFile>");
+  std::string values("\x18\0\0\0", 4);
+  for (char i = 0; i < 24; ++i) values += i;
+  const std::string appended = "format=\"appended\" offset=\"0\">" + foot + "<AppendedData encoding=\"raw\">_";
+  writeFile(folder / "raw.vti", head + image + appended + values + "</AppendedData></VTKFile>");
+  const std::string packed = test::deflateOf(values.substr(4), 15);
+  std::string blocks;
+  for (const std::size_t number : {std::size_t(1), std::size_t(24), std::size_t(0), packed.size()})
+    test::appendTo(blocks, std::uint32_t(number));
+  writeFile(folder / "packed.vti",
+            head + " compressor=\"vtkZLibDataCompressor\"" + image + appended + blocks + packed + "</AppendedData></VTKFile>");
+}
+
 }  // namespace
 
 int main(int argc, char** argv) {
   const fs::path folder = argc > 1 ? argv[1] : ".";
-  for (const char* kind : {"vdb", "exr", "png", "json", "fvx"}) fs::create_directories(folder / kind);
+  for (const char* kind : {"vdb", "exr", "png", "json", "fvx", "vti", "zarr", "tiff", "text"}) fs::create_directories(folder / kind);
   writeVolumes(folder / "vdb");
   writeImages(folder);
   writeFunctions(folder / "json");
   writeBakedVolumes(folder / "fvx");
+  writeVtiImages(folder / "vti");
+  writeHierarchies(folder / "zarr");
+  writeStacks(folder / "tiff", folder / "text");
 }
