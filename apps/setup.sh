@@ -17,7 +17,8 @@ packages=(
   libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
   liblog4cplus-dev # turns the messages of OpenVDB off
   libxxhash-dev libzstd-dev libblosc-dev zlib1g-dev
-  libinsighttoolkit5-dev libpugixml-dev libtiff-dev # scans
+  libpugixml-dev # scans, and transfer functions of other programs
+  libinsighttoolkit5-dev libtiff-dev # scans
   pybind11-dev python3-pybind11 python3-dev python3-numpy # the Python module
   help2man man-db # man pages, and their test
   libgtest-dev xvfb xdotool python3-openvdb

@@ -29,7 +29,7 @@ Camera cameraIn(const Scene& film, const CameraDescription& own, const CameraDes
 Classification classificationIn(const Scene& film, const ClassificationDescription& own, const ClassificationDescription& given) {
   Classification seen = film.classification;
   if (given == own) return seen;
-  if (given.transferFunction || (given.densityScale && seen.transferFunction)) {
+  if (given.transferFunction || given.window != own.window || (given.densityScale && seen.transferFunction)) {
     const Classification replaced = given.resolve(*film.volume, seen.emission.has_value());
     seen.transferFunction = replaced.transferFunction;
     seen.order = replaced.order;
@@ -37,7 +37,9 @@ Classification classificationIn(const Scene& film, const ClassificationDescripti
     seen.albedo = replaced.albedo;
     return seen;
   }
-  if (given.densityScale) seen.densityScale = *given.densityScale;
+  const TransferChange change{.opacity = given.opacity.value_or(1.0) / own.opacity.value_or(1.0), .inverted = given.invert != own.invert};
+  if (seen.transferFunction) seen.transferFunction = changed(*seen.transferFunction, change);
+  seen.densityScale = given.densityScale ? *given.densityScale * given.opacity.value_or(1.0) : seen.densityScale * change.opacity;
   if (given.albedo) seen.albedo = glm::vec3(*given.albedo);
   return seen;
 }

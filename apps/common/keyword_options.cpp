@@ -1,6 +1,7 @@
 #include "apps/common/keyword_options.h"
 
 #include <algorithm>
+#include <iterator>
 #include <limits>
 
 #include "engine/core/error.h"
@@ -136,6 +137,11 @@ KeywordOptions::KeywordOptions(const std::vector<Json>& layers, const Sections& 
   Reader reader(*this, sections);
   for (const Json& layer : layers) reader.read(layer);
   reader.readSceneFile();
+  try {
+    std::ranges::move(functionWarnings(scene), std::back_inserter(warnings));
+  } catch (const Error&) {
+    // Whoever draws with the function fails with the same sentence.
+  }
 }
 
 KeywordOptions::Sections KeywordOptions::sections(bool ofFile, bool choosesDevice) {

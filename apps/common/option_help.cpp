@@ -58,10 +58,20 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"albedo-grid",
      "Grid of vectors of the file with the colours, linear, 0..1; none for none [Cd, color or a like name, if there is one]"},
     {"transfer-function",
-     "Colour and opacity by scalar, instead of the above: a file, or JSON that begins with { [for scans one made from the histogram]"},
+     "Colour and opacity by scalar, instead of the above: a preset's name ('freevoxels presets' lists them), a file of FreeVoxels, "
+     "ParaView, "
+     "VolView, 3D Slicer, ImageVis3D, Inviwo or Voreen, FILE:NAME of a file of several, or JSON that begins with { [for scans one made "
+     "from "
+     "the histogram]"},
     {"iso",
      "Draws the surface in front of all values from VALUE on, in place of a transfer function, with its colour: R,G,B, "
      "linear, #rrggbb or a basic CSS name [0.8,0.8,0.8]"},
+    {"window",
+     "Values at which the transfer function begins and ends, by their middle and width or as LO..HI; without a --transfer-function it is "
+     "the preset grey [as the function says]"},
+    {"opacity", "Factor of the extinction: an opacity o becomes 1 - (1 - o)^FACTOR [1]"},
+    {"invert",
+     "Turns the colours of the transfer function round: the lowest value has the colour of the highest; opacities stay as they are"},
     {"channel",
      "Draws several grids or channels of the file together, each by a channel option: its name or number from 0, its colour, a weight of "
      "its density, "

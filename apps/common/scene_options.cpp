@@ -206,9 +206,11 @@ void warnOfTemperatures(const Volume& volume, const Classification& classificati
 
 void logRemarks(const SceneDescription& description, const Scene& scene) {
   const Volume& volume = *scene.volume;
+  for (const std::string& warning : functionWarnings(description)) spdlog::warn("{}", warning);
   logWarnings(volume, !scene.classification.transferFunction);
   logAssumptions(volume);
-  const bool isChosen = description.classification.transferFunction || description.classification.iso || description.method.isProjected();
+  const ClassificationDescription& given = description.classification;
+  const bool isChosen = given.transferFunction || given.window || given.iso || description.method.isProjected();
   if (scene.classification.transferFunction && !isChosen && !volume.classification)
     spdlog::info(
         "{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "

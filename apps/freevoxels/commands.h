@@ -42,6 +42,18 @@ class ConvertCommand {
   MessageOptions messages_;
 };
 
+/// freevoxels convert-tf IN OUT.json
+class ConvertFunctionCommand {
+ public:
+  void add(CLI::App& app);
+
+ private:
+  void run() const;
+
+  std::string function_, file_;
+  MessageOptions messages_;
+};
+
 /// freevoxels devices
 class DevicesCommand {
  public:
@@ -105,6 +117,17 @@ class OracleCommand {
 
   SceneOptions scene_;
   MessageOptions messages_;
+};
+
+/// freevoxels presets
+class PresetsCommand {
+ public:
+  void add(CLI::App& app);
+
+ private:
+  void run() const;
+
+  bool json_ = false;
 };
 
 }  // namespace freevoxels

@@ -1,4 +1,5 @@
-// The command-line program: freevoxels render | turntable | merge | oracle | compare | info | convert | generate | bake | devices.
+// The command-line program: freevoxels render | turntable | merge | oracle | compare | info | convert | generate | bake | presets |
+// convert-tf | devices.
 
 #include <CLI/CLI.hpp>
 
@@ -19,6 +20,8 @@ int main(int argc, char** argv) {
   freevoxels::ConvertCommand convert;
   freevoxels::GenerateCommand generate;
   freevoxels::BakeCommand bake;
+  freevoxels::PresetsCommand presets;
+  freevoxels::ConvertFunctionCommand convertFunction;
   freevoxels::DevicesCommand devices;
   render.add(app);
   turntable.add(app);
@@ -29,6 +32,8 @@ int main(int argc, char** argv) {
   convert.add(app);
   generate.add(app);
   bake.add(app);
+  presets.add(app);
+  convertFunction.add(app);
   devices.add(app);
   app.require_subcommand(1);
   app.footer(

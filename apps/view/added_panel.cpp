@@ -8,6 +8,7 @@
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
 #include "engine/description/added_volume.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -28,8 +29,9 @@ bool drawLook(AddedVolume& volume) {
   ClassificationDescription& look = volume.classification;
   std::string function = look.transferFunction.value_or("");
   bool changed = false;
-  if (editText("Transfer function", function, "none; a file of JSON")) {
-    look.transferFunction = function.empty() ? std::nullopt : std::optional(meantFile(function));
+  if (editText("Transfer function", function, "none; a preset or a file")) {
+    look.transferFunction =
+        function.empty() ? std::nullopt : std::optional(presetNamed(function) != nullptr ? function : meantFile(function));
     if (look.transferFunction) look.densityScale.reset(), look.albedo.reset();
     changed = true;
   }

@@ -13,6 +13,7 @@
 #include "apps/view/ui_painter.h"
 #include "apps/view/widgets.h"
 #include "engine/volume/subject.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -71,15 +72,15 @@ void drawTextures(const ShownTextures& textures, float split, const ImageFrame& 
 /// Moves the values under the curves of the transfer function: to the right a wider window, upwards a lower level, as on the
 /// console of a scanner. False if there is no transfer function.
 bool changeWindow(ViewState& state, glm::dvec2 way) {
-  std::optional<std::string>& text = state.scene.classification.transferFunction;
-  if (!text || !state.latest) return false;
+  ClassificationDescription& look = state.scene.classification;
+  if ((!look.transferFunction && !look.window) || !state.latest) return false;
   const Volume& volume = *state.latest->scene.volume;
-  const double all = double(volume.maximum) - double(volume.minimum);
-  if (way == glm::dvec2(0.0) || !(all > 0.0)) return true;
+  const ValueWindow all{volume.minimum, volume.maximum};
+  const double width = all.high - all.low;
+  if (way == glm::dvec2(0.0) || !(width > 0.0)) return true;
   attempt(state, [&] {
-    TransferModel model = TransferModel::read(*text, volume);
-    model.moveWindow(glm::dvec2(volume.minimum, volume.maximum), {way.x * all, -way.y * all});
-    text = model.json();
+    if (!look.window) look.window = windowOf(readTransferCurves(*look.transferFunction), volume);
+    look.window = movedWindow(*look.window, all, {way.x * width, -way.y * width});
     state.changed = true;
   });
   return true;

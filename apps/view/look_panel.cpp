@@ -7,19 +7,22 @@
 #include <spdlog/spdlog.h>
 
 #include "apps/view/theme.h"
-#include "apps/view/transfer_presets.h"
 #include "apps/view/ui_painter.h"
 #include "engine/core/atomic_file.h"
 #include "engine/description/scene_fields.h"
 #include "engine/description/text_values.h"
 #include "engine/image/image.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
 namespace {
 
-glm::dvec2 rangeOf(const TransferModel& model, const Volume& volume) {
-  return model.range.value_or(glm::dvec2(volume.minimum, volume.maximum));
+constexpr const char* kFirstPreset = "fog";
+
+/// The values under the curves.
+ValueWindow shownWindow(const ClassificationDescription& options, const TransferModel& model, const Volume& volume) {
+  return options.window.value_or(model.window({volume.minimum, volume.maximum}));
 }
 
 constexpr double kMinOffset = -2000.0, kMaxOffset = 4000.0;  // kelvin
@@ -43,16 +46,16 @@ std::vector<Image> PresetImages::draw(const DrawnImage& like) const {
   ImageRequest request{.scene = like.request.scene, .voxelsAlongEdge = kVoxels};
   request.scene.camera.size = 2 * kSize;
   VolumeCache volumes(request.scene, like.scene.volume);
-  std::vector<Image> images(kTransferPresets.size());
-  for (std::size_t i = 0; i < kTransferPresets.size(); ++i) try {
+  std::vector<Image> images(transferPresets().size());
+  for (std::size_t i = 0; i < transferPresets().size(); ++i) try {
       if (ends_) break;
-      request.scene.classification = {.transferFunction = kTransferPresets[i].json};
+      request.scene.classification = {.transferFunction = std::string(transferPresets()[i].json)};
       ImageMaker maker(device_, volumes);
       images[i] = downloadImage(device_, *maker.make(request, progress).image);
     } catch (const Abandoned&) {
       break;
     } catch (const std::exception& problem) {
-      spdlog::debug("image of the preset {}: {}", kTransferPresets[i].name, problem.what());
+      spdlog::debug("image of the preset {}: {}", transferPresets()[i].name, problem.what());
     }
   return images;
 }
@@ -103,7 +106,10 @@ void ClassificationPanel::follow(ViewState& state) {
   if (!text || *text == modelText_) return;
   modelText_ = *text;
   deselect();
-  if (!isInlineJson(*text)) file_ = *text;
+  if (const TransferPreset* const preset = presetNamed(*text))
+    preset_ = preset->name;
+  else if (!isInlineJson(*text))
+    file_ = *text;
   attempt(state, [&] { model_ = TransferModel::read(*text, volume); });
 }
 
@@ -124,10 +130,10 @@ void ClassificationPanel::drawKind(ViewState& state) {
   } else {
     density_ = options;
     if (modelText_.empty()) {
-      model_.takeCurves(TransferModel::read(kTransferPresets[0].json, *state.latest->scene.volume));
-      preset_ = kTransferPresets[0].name;
+      model_ = TransferModel::read(kFirstPreset, *state.latest->scene.volume);
+      modelText_ = preset_ = kFirstPreset;
     }
-    options = {.transferFunction = modelText_ = model_.json()};
+    options = {.transferFunction = modelText_};
   }
   state.changed = true;
 }
@@ -150,43 +156,44 @@ void ClassificationPanel::drawDensity(ViewState& state) {
 
 void ClassificationPanel::drawTransferFunction(ViewState& state) {
   const Volume& volume = *state.latest->scene.volume;
-  bool changed = drawPresets(state);
-  if (curve_.draw(model_, rangeOf(model_, volume), histogram_.of(state.latest->scene.volume)) |
-      strip_.draw(model_)) {
-    preset_.clear();
-    changed = true;
-  }
-  changed |= drawRange(volume);
+  ClassificationDescription& options = state.scene.classification;
+  state.changed |= drawPresets(state);
+  const ValueWindow window = shownWindow(options, model_, volume);
+  bool changed = curve_.draw(model_, {window.low, window.high}, histogram_.of(state.latest->scene.volume));
+  changed |= strip_.draw(model_);
+  drawWindow(state);
+  drawChanges(state);
   changed |= unitDistance_.draw("Unit distance", "World length that the opacities are of", "unit_distance of --transfer-function",
                                 model_.unitDistance,
                                 volume.voxelSize());
   changed |= drawFile(state);
   if (!changed) return;
-  modelText_ = model_.json();
-  state.scene.classification = {.transferFunction = modelText_};
+  preset_.clear();
+  options.transferFunction = modelText_ = model_.json();
   state.changed = true;
 }
 
-bool ClassificationPanel::drawPresets(const ViewState& state) {
+bool ClassificationPanel::drawPresets(ViewState& state) {
   bool changed = false;
   if (!ImGui::BeginCombo(beginRow("Preset"), preset_.empty() ? "own" : preset_.c_str(), ImGuiComboFlags_HeightLargest)) return false;
   const float scale = ImGui::GetFontSize() / kFontPixels;
   const ImVec2 tile(scale * float(PresetImages::kSize.x), scale * float(PresetImages::kSize.y));
-  for (std::size_t i = 0; i < kTransferPresets.size(); ++i) {
-    const TransferPreset& preset = kTransferPresets[i];
+  for (std::size_t i = 0; i < transferPresets().size(); ++i) {
+    const std::string name(transferPresets()[i].name);
     ImGui::PushID(int(i));
     const ImVec2 low = ImGui::GetCursorScreenPos();
-    if (ImGui::Selectable("##preset", preset_ == preset.name, 0, {0.0f, tile.y})) {
+    if (ImGui::Selectable("##preset", preset_ == name, 0, {0.0f, tile.y})) {
       deselect();
-      model_.takeCurves(TransferModel::read(preset.json, *state.latest->scene.volume));
-      preset_ = preset.name;
+      model_ = TransferModel::read(name, *state.latest->scene.volume);
+      state.scene.classification.transferFunction = modelText_ = preset_ = name;
+      state.scene.classification.window.reset();
       changed = true;
     }
     ImDrawList& list = *ImGui::GetWindowDrawList();
     const ImVec2 high(low.x + tile.x, low.y + tile.y);
     list.AddRectFilled(low, high, ImGui::GetColorU32(ImGuiCol_FrameBg));
     if (const Texture* const image = presets_.of(i, state.latest)) list.AddImage(textureId(*image), low, high);
-    list.AddText({high.x + 8.0f, low.y + 0.5f * (tile.y - ImGui::GetFontSize())}, ImGui::GetColorU32(ImGuiCol_Text), preset.name);
+    list.AddText({high.x + 8.0f, low.y + 0.5f * (tile.y - ImGui::GetFontSize())}, ImGui::GetColorU32(ImGuiCol_Text), name.c_str());
     ImGui::PopID();
   }
   ImGui::EndCombo();
@@ -194,22 +201,38 @@ bool ClassificationPanel::drawPresets(const ViewState& state) {
 }
 
 /// As on the console of a CT scanner: the middle and the width of the values that the curve is over.
-bool ClassificationPanel::drawRange(const Volume& volume) {
-  const double least = volume.minimum, most = volume.maximum, all = most - least;
-  if (!(all > 0.0)) return false;
+void ClassificationPanel::drawWindow(ViewState& state) {
+  const Volume& volume = *state.latest->scene.volume;
+  std::optional<ValueWindow>& given = state.scene.classification.window;
+  const ValueWindow all{volume.minimum, volume.maximum}, window = shownWindow(state.scene.classification, model_, volume);
+  const double width = all.high - all.low;
+  if (!(width > 0.0)) return;
   constexpr double kNarrowest = 1e-3, kWidest = 2.0;
-  const glm::dvec2 range = rangeOf(model_, volume);
-  double middle = 0.5 * (range.x + range.y), width = range.y - range.x;
-  bool changed = slide("Level", middle, least, most, "%.4g");
-  hint("Value in the middle of the curve; right drag in the image changes it, too", "range of --transfer-function");
-  changed |= slideLogarithmic("Window", width, kNarrowest * all, kWidest * all);
-  hint("Width of the values under the curve; right drag in the image changes it, too", "range of --transfer-function");
-  if (changed) model_.moveWindow({least, most}, {width - (range.y - range.x), middle - 0.5 * (range.x + range.y)});
-  if (model_.range && ImGui::Button("Window of all values", {-1.0f, 0.0f})) {
-    model_.range.reset();
+  double middle = 0.5 * (window.low + window.high), shownWidth = window.high - window.low;
+  bool changed = slide("Level", middle, all.low, all.high, "%.4g");
+  hint("Value in the middle of the curve; right drag in the image changes it, too", "--window");
+  changed |= slideLogarithmic("Window", shownWidth, kNarrowest * width, kWidest * width);
+  hint("Width of the values under the curve; right drag in the image changes it, too", "--window");
+  if (changed) given = movedWindow(window, all, {shownWidth - (window.high - window.low), middle - 0.5 * (window.low + window.high)});
+  if (ImGui::Button(given ? "Window of the function" : "Window of all values", {-1.0f, 0.0f})) {
+    given = given ? std::nullopt : std::optional(all);
     changed = true;
   }
-  return changed;
+  state.changed |= changed;
+}
+
+/// What changes the function without being part of it.
+void ClassificationPanel::drawChanges(ViewState& state) {
+  constexpr double kWeakest = 0.01, kStrongest = 100.0;
+  ClassificationDescription& options = state.scene.classification;
+  double opacity = options.opacity.value_or(1.0);
+  if (slideLogarithmic("Opacity", opacity, kWeakest, kStrongest)) {
+    options.opacity = opacity;
+    state.changed = true;
+  }
+  hint("Factor of the extinction", "--opacity");
+  state.changed |= tick("Invert", options.invert);
+  hint("Turns the colours round; opacities stay", "--invert");
 }
 
 bool ClassificationPanel::drawFile(ViewState& state) {
@@ -229,7 +252,9 @@ bool ClassificationPanel::drawFile(ViewState& state) {
   ImGui::SameLine();
   if (ImGui::Button("Save") && !file_.empty())
     attempt(state, [&] {
-      writeTextAtomically(file_, model_.json() + "\n");
+      TransferModel shown = model_;
+      if (const auto& window = state.scene.classification.window) shown.range = glm::dvec2(window->low, window->high);
+      writeTextAtomically(file_, shown.json() + "\n");
       state.notice = "saved " + file_;
     });
   hint("Writes the curves into this file", "--transfer-function");

@@ -60,8 +60,9 @@ class ClassificationPanel {
   void drawKind(ViewState& state);
   void drawDensity(ViewState& state);
   void drawTransferFunction(ViewState& state);
-  bool drawPresets(const ViewState& state);
-  bool drawRange(const Volume& volume);
+  bool drawPresets(ViewState& state);
+  void drawWindow(ViewState& state);
+  void drawChanges(ViewState& state);
   bool drawFile(ViewState& state);
 
   AsyncValue<std::shared_ptr<const Volume>, Histogram> histogram_{

@@ -2,6 +2,8 @@
 
 #include <spdlog/spdlog.h>
 
+#include <algorithm>
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -9,10 +11,15 @@
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
 #include "engine/description/scene_json.h"
+#include "engine/volume/transfer_formats.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
 namespace {
+
+/// Of transfer functions of other programs; those in JSON are told by what is in them.
+constexpr std::array kFunctionEndings{".vp", ".xml", ".mrml", ".1dt", ".itf", ".tfi"};
 
 bool hasExtension(const std::string& file, const char* extension) {
   return std::filesystem::path(file).extension() == extension;
@@ -27,8 +34,16 @@ void openScene(ViewState& state, const std::string& file) {
 }
 
 bool isTransferFunction(const std::string& file) {
+  if (std::ranges::any_of(kFunctionEndings, [&](const char* ending) { return hasExtension(file, ending); })) return true;
+  if (!hasExtension(file, ".json")) return false;
   const nlohmann::json json = readJson("scene or transfer function", file);
-  return json.is_object() && json.contains("opacity");
+  return (json.is_object() && json.contains("opacity")) || isForeignJson(json);
+}
+
+void openTransferFunction(ViewState& state, const std::string& file) {
+  for (const std::string& warning : transferWarnings(file)) spdlog::warn("{}", warning);
+  state.scene.classification = {.transferFunction = file};
+  state.changed = true;
 }
 
 void openVolume(ViewState& state, const std::string& file) {
@@ -52,26 +67,23 @@ void openFile(ViewState& state, const std::string& file) {
   const bool named = proceduralName(file) || isPattern(file);
   if (!named && !std::filesystem::exists(file))
     fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", file);
+  if (!named && isTransferFunction(file)) return openTransferFunction(state, file);
   if (named || hasExtension(file, ".vdb") || InputDescription{.volume = file}.kind() != VolumeKind::OpenVdb) return openVolume(state, file);
   if (hasExtension(file, ".exr") || hasExtension(file, ".hdr")) {
     state.scene.lighting.environment = file;
     state.changed = true;
   } else if (!hasExtension(file, ".json")) {
     fail(ErrorKind::Input,
-         "'{}' cannot be shown: open a volume (.vdb, .fvx or a scan), a scene or a transfer function (.json), or the light "
-         "around (.exr, .hdr)",
+         "'{}' cannot be shown: open a volume (.vdb, .fvx or a scan), a scene or a transfer function (.json, .vp, .xml, .1dt, .itf, .tfi), "
+         "or the light around (.exr, .hdr)",
          file);
-  } else if (isTransferFunction(file)) {
-    state.scene.classification = {.transferFunction = file};
-    state.changed = true;
   } else {
     openScene(state, file);
   }
 }
 
 bool isWorthRemembering(const std::string& file) {
-  return !proceduralName(file) && !hasExtension(file, ".exr") && !hasExtension(file, ".hdr") &&
-         !(hasExtension(file, ".json") && isTransferFunction(file));
+  return !proceduralName(file) && !hasExtension(file, ".exr") && !hasExtension(file, ".hdr") && !isTransferFunction(file);
 }
 
 }  // namespace freevoxels

@@ -4,15 +4,11 @@
 #include <cmath>
 #include <nlohmann/json.hpp>
 
-#include "engine/description/text_values.h"
-#include "engine/core/json_file.h"
-#include "engine/volume/classification.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
 namespace {
-
-using Json = nlohmann::json;
 
 /// A hand is not more exact, and the command line stays short.
 double rounded(double value) {
@@ -68,21 +64,16 @@ double roundedTo(double value, double step) {
 }
 
 TransferModel TransferModel::read(const std::string& text, const Volume& volume) {
-  const bool isInline = isInlineJson(text);
-  // Refuses whatever is wrong.
-  (void)(isInline ? parseTransferFunction(text, volume) : readTransferFunction(text, volume));
-  const Json root =
-      isInline ? parseJson("transfer function", "inline", text) : readJson("transfer function", text);
+  const TransferCurves curves = readTransferCurves(text);
   TransferModel model;
   model.opacity.clear();
-  for (const Json& point : root["opacity"])
-    model.opacity.push_back({point[0].get<double>(), point[1].get<double>()});
-  for (const Json& point : root.value("color", Json::array()))
-    model.color.push_back(
-        {point[0].get<double>(), {point[1].get<double>(), point[2].get<double>(), point[3].get<double>()}});
-  if (root.contains("range"))
-    model.range = glm::dvec2(root["range"][0].get<double>(), root["range"][1].get<double>());
-  if (root.contains("unit_distance")) model.unitDistance = root["unit_distance"].get<double>();
+  for (const auto& [x, opacity] : curves.opacity) model.opacity.push_back({x, opacity});
+  for (const auto& [x, color] : curves.color) model.color.push_back({x, color});
+  if (curves.range != TransferCurves::Range::All) {
+    const ValueWindow values = windowOf(curves, volume);
+    model.range = glm::dvec2(values.low, values.high);
+  }
+  if (curves.unitDistance || curves.unitShare) model.unitDistance = unitDistanceOf(curves, volume);
   return model;
 }
 
@@ -139,18 +130,17 @@ bool TransferModel::removeColor(std::size_t point) {
   return true;
 }
 
-void TransferModel::moveWindow(glm::dvec2 all, glm::dvec2 widthAndMiddle) {
-  const glm::dvec2 now = range.value_or(all);
-  const double widest = 2.0 * (all.y - all.x), narrowest = 5e-4 * widest;
-  const double width = std::clamp(now.y - now.x + widthAndMiddle.x, narrowest, widest);
-  const double middle = std::clamp(0.5 * (now.x + now.y) + widthAndMiddle.y, all.x, all.y);
-  const double step = std::pow(10.0, std::floor(std::log10(width)) - 4.0);
-  range = glm::dvec2(roundedTo(middle - 0.5 * width, step), roundedTo(middle + 0.5 * width, step));
-}
-
 void TransferModel::takeCurves(const TransferModel& other) {
   opacity = other.opacity;
   color = other.color;
+}
+
+ValueWindow movedWindow(const ValueWindow& window, const ValueWindow& all, glm::dvec2 widthAndMiddle) {
+  const double widest = 2.0 * (all.high - all.low), narrowest = 5e-4 * widest;
+  const double width = std::clamp(window.high - window.low + widthAndMiddle.x, narrowest, widest);
+  const double middle = std::clamp(0.5 * (window.low + window.high) + widthAndMiddle.y, all.low, all.high);
+  const double step = std::pow(10.0, std::floor(std::log10(width)) - 4.0);
+  return {roundedTo(middle - 0.5 * width, step), roundedTo(middle + 0.5 * width, step)};
 }
 
 }  // namespace freevoxels

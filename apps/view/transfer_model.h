@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/volume/transfer_curves.h"
 #include "engine/volume/volume.h"
 
 namespace freevoxels {
@@ -30,7 +31,7 @@ struct TransferModel {
   std::optional<glm::dvec2> range;  ///< scalars at x = 0 and 1; default: the volume's
   std::optional<double> unitDistance;
 
-  /// Reads an option's text: a file name, or JSON. Fails as `freevoxels render` does.
+  /// Reads an option's text: a preset, a file name, or JSON. Fails as `freevoxels render` does.
   static TransferModel read(const std::string& text, const Volume& volume);
   /// One line of JSON; edited numbers have few digits.
   std::string json() const;
@@ -52,11 +53,14 @@ struct TransferModel {
   /// Does nothing and returns false for the only point.
   bool removeColor(std::size_t point);
 
-  /// Changes the range, which is `all` if it is not given, by a width and a middle. It stays wide enough to have an inside.
-  void moveWindow(glm::dvec2 all, glm::dvec2 widthAndMiddle);
+  /// The values at x = 0 and 1 of a volume of which `all` are the least and the largest.
+  ValueWindow window(ValueWindow all) const { return range ? ValueWindow{range->x, range->y} : all; }
 
   /// Replaces the curves; range and unit distance stay.
   void takeCurves(const TransferModel& other);
 };
+
+/// A window that is wider and higher by these. It stays wide enough to have an inside, and its middle among `all` values.
+ValueWindow movedWindow(const ValueWindow& window, const ValueWindow& all, glm::dvec2 widthAndMiddle);
 
 }  // namespace freevoxels

@@ -41,7 +41,7 @@ void ViewState::look(const Camera& from) {
 void ViewState::begin(const Scene& first) {
   camera = first.camera;
   if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction)
-    scene.classification.transferFunction = transferFunctionJson(*function);
+    scene.classification.takeFunction(*function);
   LightingDescription& lighting = scene.lighting;
   if (lighting.hasLight() || !first.lighting) return;
   for (const Light& light : first.lighting->lights) lighting.lights.push_back({.light = light, .hasIntensity = true});
@@ -66,7 +66,7 @@ void ViewState::showFrame(const std::string& file) {
 
 void ViewState::keepScales(const Classification& now) {
   ClassificationDescription& classification = scene.classification;
-  if (!now.transferFunction && !classification.densityScale) classification.densityScale = now.densityScale;
+  if (!now.transferFunction && !classification.densityScale) classification.takeDensityScale(now.densityScale);
   if (now.emission) scene.emission.take(*now.emission);
 }
 
@@ -75,7 +75,7 @@ void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<Cli
   const Classification& now = latest->scene.classification;
   ClassificationDescription& options = scene.classification;
   if (!now.transferFunction && !options.transferFunction && !options.densityScale && !latest->scene.volume->classificationIsFixed)
-    options.densityScale = now.densityScale;
+    options.takeDensityScale(now.densityScale);
   scene.input.clipBox = box;
   scene.input.clipPlane = plane;
   changed = true;

@@ -202,12 +202,13 @@ std::string addedVolumeText(const AddedVolume& added) {
   return object.dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);
 }
 
-Json withFiles(Json added, const std::function<std::string(const std::string&)>& change) {
-  if (added.is_string()) return change(added.get<std::string>());
+Json withFiles(Json added, const std::function<std::string(const std::string&, bool)>& change) {
+  if (added.is_string()) return change(added.get<std::string>(), false);
   if (!added.is_object()) return added;
-  for (const auto& [key, value] : added.items())
-    if (value.is_string() && (key == kVolume || key == "transfer-function" || key == "transfer_function"))
-      value = change(value.get<std::string>());
+  for (const auto& [key, value] : added.items()) {
+    const bool isFunction = key == "transfer-function" || key == "transfer_function";
+    if (value.is_string() && (key == kVolume || isFunction)) value = change(value.get<std::string>(), isFunction);
+  }
   return added;
 }
 

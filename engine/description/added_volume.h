@@ -16,8 +16,8 @@ namespace freevoxels {
 AddedVolume readAddedVolume(const std::string& text);
 /// The object as JSON, which readAddedVolume() takes.
 std::string addedVolumeText(const AddedVolume& added);
-/// The same JSON, or a name of a volume, with names of files changed by `change`.
-nlohmann::json withFiles(nlohmann::json added, const std::function<std::string(const std::string&)>& change);
+/// The same JSON, or a name of a volume, with names of files changed by `change`, which is told whether they are of transfer functions.
+nlohmann::json withFiles(nlohmann::json added, const std::function<std::string(const std::string& file, bool isFunction)>& change);
 
 /// Reads the volumes and classifies them. A volume that somebody still holds is not read again. Fails as SceneDescription::readVolume().
 std::vector<SceneVolume> openAddedVolumes(const SceneDescription& scene, const Progress& progress = {});

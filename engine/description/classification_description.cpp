@@ -4,6 +4,7 @@
 #include "engine/description/scene_description.h"
 #include "engine/description/text_values.h"
 #include "engine/volume/scan.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -27,17 +28,30 @@ Classification bakedClassification(const ClassificationDescription& given, const
     fail(ErrorKind::Usage, "{} chooses among the grids of an OpenVDB file, and {} is a baked volume: give it to 'freevoxels bake'",
          Parameter("albedo-grid"), volume.source);
   Classification classification = *volume.classification;
-  const bool isChanged = given.densityScale || given.albedo || given.transferFunction || given.iso || given.order;
+  const bool isChanged = given.densityScale || given.albedo || given.transferFunction || given.iso || given.order ||
+                         given.change() != TransferChange{};
   if (isChanged && volume.classificationIsFixed)
     fail(ErrorKind::Usage,
-         "{} was baked for one classification, which {}, {}, {} and {} cannot change: leave them out, or bake it with {}",
-         volume.source, Parameter("density-scale"), Parameter("albedo"), Parameter("transfer-function"), Parameter("classification"),
-         Parameter("keep-scalars"));
+         "{} was baked for one classification, which {}, {}, {}, {}, {}, {} and {} cannot change: leave them out, or bake it with {}",
+         volume.source, Parameter("density-scale"), Parameter("albedo"), Parameter("transfer-function"), Parameter("window"),
+         Parameter("opacity"), Parameter("invert"), Parameter("classification"), Parameter("keep-scalars"));
   if (given.densityScale || given.albedo) classification.transferFunction.reset();
   if (given.densityScale) classification.densityScale = *given.densityScale;
   if (given.albedo) classification.albedo = glm::vec3(*given.albedo);
   if (given.order) classification.order = *given.order;
   return classification;
+}
+
+/// The transfer function to draw with; nothing for densities. `baked` is that of a baked volume.
+std::optional<TransferFunction> functionToDraw(const ClassificationDescription& given, const Classification& baked, const Volume& volume,
+                                               bool shines) {
+  if (given.iso) return isoFunction(*given.iso, volume);
+  if (given.transferFunction) return fitted(readTransferCurves(*given.transferFunction), volume, given.change());
+  if (volume.classification && baked.transferFunction) return changed(*baked.transferFunction, given.change());
+  if (given.window) return fitted(curvesOf(*presetNamed(kFunctionOfWindow)), volume, given.change());
+  const bool isAutomatic = !given.densityScale && !given.albedo && !volume.albedo && !shines && !volume.classification;
+  if (isAutomatic && looksLikeScan(volume)) return changed(scanTransferFunction(volume), given.change());
+  return std::nullopt;
 }
 
 }  // namespace
@@ -51,31 +65,25 @@ Classification ClassificationDescription::resolve(const Volume& volume, bool shi
   if ((transferFunction || iso) && channels.empty() && volume.albedo && volume.albedo->isMade)
     fail(ErrorKind::Usage, "{} is of one grid of values, and {} is drawn with several channels: choose one with {}",
          Parameter(iso ? "iso" : "transfer-function"), volume.source, Parameter("grid", "NAME"));
-  if (iso) {
-    classification.transferFunction = isoFunction(*iso, volume);
-    classification.order = order.value_or(ClassificationOrder::Post);
+  if (auto function = functionToDraw(*this, classification, volume, shines)) {
+    const bool isBaked = !transferFunction && !iso && classification.transferFunction;
+    if (!isBaked) classification.order = order.value_or(ClassificationOrder::Post);
+    classification.transferFunction = std::move(function);
     return classification;
   }
-  if (transferFunction) {
-    classification.transferFunction = isInlineJson(*transferFunction)
-                                          ? parseTransferFunction(*transferFunction, volume)
-                                          : readTransferFunction(*transferFunction, volume);
-    classification.order = order.value_or(ClassificationOrder::Post);
-    return classification;
+  if (invert)
+    fail(ErrorKind::Usage, "{} turns the colours of a transfer function round, and {} is drawn without: give {}", Parameter("invert"),
+         volume.source, Parameter("transfer-function"));
+  if (!volume.classification) {
+    if (densityScale)
+      classification.densityScale = *densityScale;
+    else if (volume.isSolid)
+      classification.densityScale = kSolidOpticalDepth / volume.voxelSize();
+    else
+      classification.densityScale = automaticDensityScale(volume, shines ? kShiningOpticalDepth : kAutomaticOpticalDepth);
+    if (albedo) classification.albedo = glm::vec3(*albedo);
   }
-  if (volume.classification) return classification;
-  if (!densityScale && !albedo && !volume.albedo && !shines && looksLikeScan(volume)) {
-    classification.transferFunction = scanTransferFunction(volume);
-    classification.order = order.value_or(ClassificationOrder::Post);
-    return classification;
-  }
-  if (densityScale)
-    classification.densityScale = *densityScale;
-  else if (volume.isSolid)
-    classification.densityScale = kSolidOpticalDepth / volume.voxelSize();
-  else
-    classification.densityScale = automaticDensityScale(volume, shines ? kShiningOpticalDepth : kAutomaticOpticalDepth);
-  if (albedo) classification.albedo = glm::vec3(*albedo);
+  classification.densityScale *= opacity.value_or(1.0);
   return classification;
 }
 
@@ -89,18 +97,18 @@ Classification ClassificationDescription::resolveProjected(const Volume& volume,
          volume.source, Parameter("keep-scalars"));
   Classification classification;
   if (transferFunction)
-    classification.transferFunction =
-        ClassificationDescription{.transferFunction = transferFunction}.resolve(volume, false).transferFunction;
-  else if (volume.classification)
-    classification.transferFunction = volume.classification->transferFunction;
-  if (!classification.transferFunction) classification.transferFunction = intensityFunction(volume, projection);
+    classification.transferFunction = fitted(readTransferCurves(*transferFunction), volume, change());
+  else if (volume.classification && volume.classification->transferFunction)
+    classification.transferFunction = changed(*volume.classification->transferFunction, change());
+  else
+    classification.transferFunction = changed(intensityFunction(volume, projection), change());
   if (projection == IntensityProjection::Average) keepAllValues(*classification.transferFunction, volume);
   return classification;
 }
 
 std::optional<GridRequest> ClassificationDescription::grid() const {
   if (albedoGrid) return *albedoGrid == kNone ? std::nullopt : std::optional(GridRequest{.name = *albedoGrid, .isRequired = true});
-  return albedo || transferFunction || iso || !channels.empty() ? std::nullopt : std::optional(GridRequest());
+  return albedo || transferFunction || iso || window || invert || !channels.empty() ? std::nullopt : std::optional(GridRequest());
 }
 
 void ClassificationDescription::check(const InputDescription& input) const {
@@ -118,18 +126,30 @@ void ClassificationDescription::check(const InputDescription& input) const {
 
 LabelRequest ClassificationDescription::labelRequest() const {
   if (labels) return {.labels = *labels, .ofAllGrids = true};
-  if (densityScale || albedo || transferFunction || iso || albedoGrid) return {};
+  if (densityScale || albedo || transferFunction || iso || albedoGrid || window || invert) return {};
   return {.labels = Labels()};
 }
 
 void ClassificationDescription::take(const Classification& resolved) {
   if (!resolved.transferFunction) {
-    densityScale = resolved.densityScale;
+    takeDensityScale(resolved.densityScale);
     albedo = glm::dvec3(resolved.albedo);
     return;
   }
-  transferFunction = transferFunctionJson(*resolved.transferFunction);  // with its range, which a file may leave to the volume
+  takeFunction(*resolved.transferFunction);
   order = resolved.order;
+}
+
+void ClassificationDescription::takeFunction(const TransferFunction& resolved) {
+  transferFunction = transferFunctionJson(resolved);  // with its range, which a file may leave to the volume
+  window.reset();
+  opacity.reset();
+  invert = false;
+}
+
+void ClassificationDescription::takeDensityScale(double resolved) {
+  densityScale = resolved;
+  opacity.reset();
 }
 
 }  // namespace freevoxels

@@ -11,6 +11,7 @@
 #include "engine/storage/baked_volume.h"
 #include "engine/visibility/detail_rule.h"
 #include "engine/volume/subject.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -24,9 +25,18 @@ double shortest(float value) {
 ClassificationDescription resolvedClassification(const ClassificationDescription& given, const Scene& scene) {
   const Classification& classification = scene.classification;
   if (scene.volume->classificationIsFixed) return {};
-  if (classification.transferFunction)
-    return {.transferFunction = given.transferFunction.value_or(transferFunctionJson(*classification.transferFunction)),
-            .order = classification.order};
+  if (classification.transferFunction) {
+    ClassificationDescription description{.order = classification.order};
+    if (given.transferFunction) {
+      description.transferFunction = given.transferFunction;
+      description.window = given.window;
+      description.opacity = given.opacity;
+      description.invert = given.invert;
+    } else {
+      description.takeFunction(*classification.transferFunction);
+    }
+    return description;
+  }
   const glm::vec3 albedo = classification.albedo;
   const bool isMade = scene.volume->albedo && scene.volume->albedo->isMade;
   const bool hasLabels = isMade && scene.volume->albedo->name != kChannelsName;
@@ -261,6 +271,17 @@ SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCou
   result.camera.lookAt = camera.lookAt;
   result.camera.orbit = camera.angles();
   return result;
+}
+
+std::vector<std::string> functionWarnings(const SceneDescription& description) {
+  std::vector<std::string> all;
+  const auto add = [&](const ClassificationDescription& classification) {
+    if (!classification.transferFunction) return;
+    for (std::string& one : transferWarnings(*classification.transferFunction)) all.push_back(std::move(one));
+  };
+  add(description.classification);
+  for (const AddedVolume& added : description.added) add(added.classification);
+  return all;
 }
 
 std::string rendererText(const SceneDescription& description, const Scene& scene) {

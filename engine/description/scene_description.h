@@ -29,6 +29,7 @@
 #include "engine/volume/scan.h"
 #include "engine/volume/scan_file.h"
 #include "engine/volume/scene_volume.h"
+#include "engine/volume/transfer_curves.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
 #include "engine/volume/volume_source.h"
@@ -114,7 +115,11 @@ struct CameraDescription {
 struct ClassificationDescription {
   std::optional<double> densityScale;           ///< extinction per world unit at density 1, at least 0
   std::optional<glm::dvec3> albedo;             ///< linear Rec.709, 0 to 1
-  std::optional<std::string> transferFunction;  ///< a file, or JSON that begins with {
+  std::optional<std::string> transferFunction;  ///< a file, a preset, or JSON that begins with { (transfer_source.h)
+  /// Replaces the range of the transfer function; of a volume that has none, the function is then kFunctionOfWindow.
+  std::optional<ValueWindow> window;
+  std::optional<double> opacity;  ///< factor of the extinction, kLeastOpacity to kMostOpacity
+  bool invert = false;            ///< turns the colours of the transfer function round
   /// A grid of vectors of an OpenVDB file: linear colours, 0 to 1; kNone for none; else that of a usual name (grid_names.h), if there is
   /// one and neither albedo nor transfer function are given.
   std::optional<std::string> albedoGrid;
@@ -135,6 +140,12 @@ struct ClassificationDescription {
   Classification resolveProjected(const Volume& volume, IntensityProjection projection) const;
   /// Gives what was resolved for another volume.
   void take(const Classification& resolved);
+  /// Gives the resolved function, and with it what changes it.
+  void takeFunction(const TransferFunction& resolved);
+  /// Gives the resolved density scale, and with it the opacity.
+  void takeDensityScale(double resolved);
+  /// What changes the function.
+  TransferChange change() const { return {.window = window, .opacity = opacity.value_or(1.0), .inverted = invert}; }
 
   /// The grid of albedos to read, if any.
   std::optional<GridRequest> grid() const;
@@ -144,6 +155,9 @@ struct ClassificationDescription {
 
   bool operator==(const ClassificationDescription&) const = default;
 };
+
+inline constexpr const char* kFunctionOfWindow = "grey";
+inline constexpr double kLeastOpacity = 1e-6, kMostOpacity = 1e6;
 
 /// Emission by temperature.
 struct EmissionDescription {
@@ -361,6 +375,8 @@ Volume openProcedural(const std::string& name, std::optional<glm::ivec3> resolut
 
 /// What the user should know of a volume: its own warnings, NaN values, and negative values if the scalars are densities.
 std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities);
+/// What is not drawn of the transfer functions that a description names (transferWarnings). Fails with ErrorKind::Input.
+std::vector<std::string> functionWarnings(const SceneDescription& description);
 /// What was assumed of a volume's file, and how to say otherwise, in one line; empty if nothing was.
 std::string remarksOf(const Volume& volume);
 

@@ -92,14 +92,18 @@ void addClassification(std::vector<SceneField>& fields) {
   section.add("density-scale", &Classified::densityScale, numbers<double>({.form = "S", .range = kPositive}));
   section.add("albedo", &Classified::albedo, numbers<glm::dvec3>({.form = "R,G,B", .range = kUnit}));
   section.add("albedo-grid", &Classified::albedoGrid, text(Kind::Name, "NAME"));
-  section.add("transfer-function", &Classified::transferFunction, text(Kind::File, "FILE.json")).excludes = {"density-scale", "albedo",
-                                                                                                             "albedo-grid"};
+  section.add("transfer-function", &Classified::transferFunction, text(Kind::Function, "FILE|PRESET")).excludes = {"density-scale",
+                                                                                                                   "albedo", "albedo-grid"};
+  section.add("window", &Classified::window, Codec<ValueWindow>{.form = kWindowForm, .read = readWindow, .text = windowText}).excludes = {
+      "density-scale", "albedo", "albedo-grid"};
+  section.add("opacity", &Classified::opacity, numbers<double>({.form = "FACTOR", .range = {kLeastOpacity, kMostOpacity}}));
+  section.add("invert", &Classified::invert, truth(Kind::Flag)).excludes = {"density-scale", "albedo", "albedo-grid"};
   section.add("iso", &Classified::iso, Codec<IsoSurface>{.form = kIsoForm, .read = readIsoSurface, .text = isoSurfaceText}).excludes = {
-      "transfer-function", "density-scale", "albedo", "albedo-grid"};
+      "transfer-function", "density-scale", "albedo", "albedo-grid", "window", "opacity", "invert"};
   section.add("classification", &Classified::order, words(kOrderWords));
   SceneField& labels =
       section.add("labels", &Classified::labels, Codec<Labels>{.form = kLabelsForm, .read = readLabels, .text = labelsText});
-  labels.excludes = {"transfer-function", "iso", "albedo-grid"};
+  labels.excludes = {"transfer-function", "iso", "albedo-grid", "window", "invert"};
   SceneField& channels = section.add(
       "channel", Kind::Value, kChannelForm,
       [](Classified& classified, const Texts& given) {
@@ -112,7 +116,7 @@ void addClassification(std::vector<SceneField>& fields) {
         return texts;
       });
   channels.repeated = true;
-  channels.excludes = {"transfer-function", "iso", "albedo", "albedo-grid", "labels", "temperature-grid"};
+  channels.excludes = {"transfer-function", "iso", "window", "invert", "albedo", "albedo-grid", "labels", "temperature-grid"};
 }
 
 void addEmission(std::vector<SceneField>& fields) {

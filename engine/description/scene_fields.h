@@ -38,14 +38,15 @@ inline const Words<PngBits> kPngBitsWords{{"8", "16"}};
 
 struct SceneField {
   enum class Kind {
-    Value,    ///< numbers or words
-    Keys,     ///< KEY=VALUE with commas between them
-    Volumes,  ///< another volume: a file with KEY=VALUE behind it, or JSON that begins with {
-    Name,     ///< a name, whatever it looks like
-    Volume,   ///< a file, or procedural:NAME
-    File,     ///< a file, or JSON that begins with {
-    Flag,     ///< "true" or "false", which is that of a field that is not given
-    Switch,   ///< "true" or "false"
+    Value,     ///< numbers or words
+    Keys,      ///< KEY=VALUE with commas between them
+    Volumes,   ///< another volume: a file with KEY=VALUE behind it, or JSON that begins with {
+    Name,      ///< a name, whatever it looks like
+    Volume,    ///< a file, or procedural:NAME
+    File,      ///< a file
+    Function,  ///< a transfer function: a file, FILE:NAME, a preset, or JSON that begins with {
+    Flag,      ///< "true" or "false", which is that of a field that is not given
+    Switch,    ///< "true" or "false"
   };
   std::string section, name;  ///< of the scene file; the name is also that of the Parameter
   Kind kind = Kind::Value;
@@ -63,7 +64,7 @@ struct SceneField {
 
   /// The key in a scene file: "lights" for "light".
   std::string key() const { return !repeated ? name : plural.empty() ? name + "s" : plural; }
-  bool isFile() const { return kind == Kind::Volume || kind == Kind::File; }
+  bool isFile() const { return kind == Kind::Volume || kind == Kind::File || kind == Kind::Function; }
   bool isOrExcludes(const SceneField& other) const;
 };
 

@@ -13,6 +13,7 @@
 #include "engine/core/printable.h"
 #include "engine/description/added_volume.h"
 #include "engine/description/text_values.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -38,6 +39,19 @@ char separatorOf(const SceneField& field) {
 /// Whether the text is not a file name: a procedural volume, or JSON.
 bool isNoPath(const std::string& text) {
   return proceduralName(text) || isInlineJson(text) || isInMemory(text);
+}
+
+/// The name of a file of this field, as a scene in `folder` has it.
+std::string namedFrom(const fs::path& folder, bool isFunction, const std::string& text) {
+  if (isNoPath(text)) return text;
+  return isFunction ? transferNameIn(folder.string(), text) : (folder / text).lexically_normal().string();
+}
+
+/// The same name as a scene in `folder` is to have it.
+std::string namedFor(const fs::path& folder, bool isFunction, const std::string& text) {
+  std::error_code error;
+  if (isNoPath(text) || (isFunction && presetNamed(text) != nullptr && !fs::is_regular_file(text, error))) return text;
+  return fs::proximate(text, folder).string();
 }
 
 std::string numbersText(const SceneField& field, const Json& list) {
@@ -68,18 +82,18 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
   if (field.kind == Kind::Volumes && (value.is_object() || value.is_string())) {
     const Json named = value.is_string() && !isInlineJson(value.get<std::string>()) ? Json{{"volume", value}} : value;
     if (named.is_string()) return named.get<std::string>();
-    return withFiles(named, [&](const std::string& file) { return isNoPath(file) ? file : (folder / file).lexically_normal().string(); })
+    return withFiles(named, [&](const std::string& file, bool isFunction) { return namedFrom(folder, isFunction, file); })
         .dump(-1, ' ', false, Json::error_handler_t::replace);
   }
   if (value.is_string()) {
     const auto text = value.get<std::string>();
-    return field.isFile() && !isNoPath(text) ? (folder / text).lexically_normal().string() : text;
+    return field.isFile() ? namedFrom(folder, field.kind == Kind::Function, text) : text;
   }
   if (!field.isFile() && value.is_number()) return value.dump();
   if (!field.isFile() && isNumbers(value)) return numbersText(field, value);
   if (value.is_object() && field.kind == Kind::Keys)
     if (const std::string text = keysText(field, value); !text.empty()) return text;
-  if (value.is_object() && field.form == "FILE.json") return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (value.is_object() && field.kind == Kind::Function) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
   fail(ErrorKind::Input, "{} takes {}, not {}", name, field.form, inShort(value));
 }
 
@@ -142,12 +156,12 @@ bool isFormerKey(const std::string& section, const std::string& key) {
 OrderedJson fieldJson(const SceneField& field, const std::string& text, const std::optional<fs::path>& folder) {
   if (field.kind == Kind::Volumes)
     return withFiles(parseJson(field.name, "inline", text),
-                     [&](const std::string& file) { return folder && !isNoPath(file) ? fs::proximate(file, *folder).string() : file; });
+                     [&](const std::string& file, bool isFunction) { return folder ? namedFor(*folder, isFunction, file) : file; });
   if (field.kind == Kind::Flag || field.kind == Kind::Switch) return text == "true";
   if (text.empty()) return true;
   if (field.isFile()) {
     if (isInlineJson(text)) return parseJson(field.name, "inline", text);
-    return folder && !isNoPath(text) ? fs::proximate(text, *folder).string() : text;
+    return folder ? namedFor(*folder, field.kind == Kind::Function, text) : text;
   }
   if (field.kind == Kind::Name) return text;
   if (field.kind != Kind::Keys) return numbersOrText(text, separatorOf(field));

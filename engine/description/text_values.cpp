@@ -133,6 +133,27 @@ int readWord(const std::string& name, const std::vector<std::string>& words, con
   return int(found - words.begin());
 }
 
+ValueWindow readWindow(const std::string& name, const std::string& text) {
+  constexpr std::string_view kDots = "..";
+  const std::size_t dots = text.find(kDots);
+  ValueWindow window;
+  if (dots != text.npos) {
+    const NumberForm end{.name = name, .form = kWindowForm, .range = {-1e30, 1e30}};
+    window = {readNumbers(end, text.substr(0, dots))[0], readNumbers(end, text.substr(dots + kDots.size()))[0]};
+  } else {
+    const auto n = readNumbers({.name = name, .form = kWindowForm, .count = 2, .range = {-1e30, 1e30}}, text);
+    window = {n[0] - 0.5 * n[1], n[0] + 0.5 * n[1]};
+  }
+  if (!(float(window.low) < float(window.high)))
+    fail(ErrorKind::Usage, "{} '{}' has no width: give CENTER,WIDTH with a width above 0, or LO..HI with LO below HI", name,
+         quotedPart(text));
+  return window;
+}
+
+std::string windowText(const ValueWindow& window) {
+  return numberText(window.low) + ".." + numberText(window.high);
+}
+
 bool isInlineJson(const std::string& text) {
   return text.starts_with('{');
 }

@@ -9,6 +9,8 @@
 #include <string>
 #include <vector>
 
+#include "engine/volume/transfer_curves.h"
+
 namespace freevoxels {
 
 /// A range that includes both ends.
@@ -42,6 +44,12 @@ int readWord(const std::string& name, const std::vector<std::string>& words, con
 
 /// Whether a text that names a JSON file is JSON itself.
 bool isInlineJson(const std::string& text);
+
+inline constexpr const char* kWindowForm = "CENTER,WIDTH|LO..HI";
+/// A window of values, by its middle and width, or by its ends.
+ValueWindow readWindow(const std::string& name, const std::string& text);
+/// By its ends.
+std::string windowText(const ValueWindow& window);
 
 /// The shortest text that is read as the same number.
 std::string numberText(double value);

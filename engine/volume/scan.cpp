@@ -215,6 +215,17 @@ std::pair<double, double> visibleRange(const Volume& volume, IntensityProjection
   return {volume.minimum, count > 0.0 ? sum / count : double(volume.maximum)};
 }
 
+/// The value above which all voxels but the outliers are.
+double lowestUsual(const Histogram& histogram) {
+  std::uint64_t all = 0, below = 0;
+  for (const std::uint64_t count : histogram.counts) all += count;
+  std::size_t bins = 0;
+  while (bins < histogram.counts.size() && double(below + histogram.counts[bins]) <= kOutliers * double(all))
+    below += histogram.counts[bins++];
+  const double range = double(histogram.maximum) - double(histogram.minimum);
+  return histogram.minimum + range * double(bins) / double(histogram.counts.size());
+}
+
 }  // namespace
 
 bool looksLikeScan(const Volume& volume) {
@@ -272,6 +283,15 @@ void orientScan(Volume& volume) {
   if (!looksLikeScan(volume)) return;
   volume.upReason = "it looks like a scan";
   volume.up = {0.0, 0.0, 1.0};
+}
+
+ValueWindow usualRange(const Volume& volume) {
+  const Histogram fine = histogramOf(volume, kFineBins);
+  ValueWindow range{lowestUsual(fine), highestUsual(fine)};
+  if (!looksLikeScan(volume) && volume.minimum >= 0.0f) range.low = 0.0;
+  if (!(float(range.low) < float(range.high))) range = {volume.minimum, volume.maximum};
+  if (!(float(range.low) < float(range.high))) range = {std::min(range.low, 0.0), std::max(range.high, 1.0)};
+  return range;
 }
 
 TransferFunction scanTransferFunction(const Volume& volume) {

@@ -3,6 +3,7 @@
 
 #include "engine/scene/render_settings.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/transfer_curves.h"
 
 namespace freevoxels {
 
@@ -38,6 +39,9 @@ bool looksLikeFog(const Volume& volume);
 /// Sets the up direction of a volume that looks like a scan to +z: slices are mostly stacked along the
 /// patient's axis.
 void orientScan(Volume& volume);
+
+/// The values between which all but one in 2000 at either end are; from 0 on if the volume is no scan and has no value below.
+ValueWindow usualRange(const Volume& volume);
 
 /// A transfer function for four classes of values, which are found by the histogram (Otsu's method with
 /// several thresholds, Liao, Chen and Chung 2001, on square roots of counts, so that small parts count). The

@@ -1,4 +1,4 @@
-// Reads transfer functions from JSON.
+// Transfer functions in the JSON of this project.
 #include <fmt/ranges.h>
 
 #include <algorithm>
@@ -9,7 +9,7 @@
 
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
-#include "engine/volume/classification.h"
+#include "engine/volume/transfer_curves.h"
 
 namespace freevoxels {
 
@@ -18,7 +18,8 @@ namespace {
 namespace fs = std::filesystem;
 using Json = nlohmann::json;
 
-constexpr std::array<std::string_view, 4> kKeys{"range", "opacity", "color", "unit_distance"};
+constexpr std::array<std::string_view, 6> kKeys{"range", "opacity", "color", "unit_distance", "unit_share", "description"};
+constexpr const char* kUsualRange = "usual";
 
 /// A key of the file, with checked access to its value and messages that name it.
 class Field {
@@ -86,40 +87,52 @@ void checkKeys(const fs::path& file, const Json& root) {
          file.string());
 }
 
-/// The scalars lo and hi at x = 0 and x = 1.
-std::array<double, 2> readRange(const fs::path& file, const Json& root, const Volume& volume) {
-  if (!root.contains("range")) return {volume.minimum, volume.maximum};
+/// Sets what is at x = 0 and 1.
+void readRange(const fs::path& file, const Json& root, TransferCurves& curves) {
+  if (!root.contains("range")) return;
   const Field field(file, "range", root["range"]);
+  if (field.value() == kUsualRange) {
+    curves.range = TransferCurves::Range::Usual;
+    return;
+  }
+  if (field.value().is_string()) field.failHere("must be [lo, hi] or \"{}\", not {}", kUsualRange, inShort(field.value()));
   const std::array<double, 2> range = field.tuple<2>(field.value());
   if (!(float(range[0]) < float(range[1])))
     field.failHere("must be [lo, hi] with lo below hi, but is [{}, {}]", range[0], range[1]);
-  return range;
+  curves.range = TransferCurves::Range::Values;
+  curves.window = {range[0], range[1]};
 }
 
-double readUnitDistance(const fs::path& file, const Json& root, const Volume& volume) {
-  if (!root.contains("unit_distance")) return volume.voxelSize();
-  const Field field(file, "unit_distance", root["unit_distance"]);
-  const double distance = field.number();
-  if (!(float(distance) > 0.0f)) field.failHere("must be a length above 0, but is {}", distance);
-  return distance;
+std::optional<double> readLength(const fs::path& file, const Json& root, const char* key) {
+  if (!root.contains(key)) return std::nullopt;
+  const Field field(file, key, root[key]);
+  const double length = field.number();
+  if (!(float(length) > 0.0f)) field.failHere("must be a length above 0, but is {}", length);
+  return length;
 }
 
-TransferFunction makeTransferFunction(const fs::path& file, const Json& root, const Volume& volume) {
+/// Any text or none.
+std::string readDescription(const fs::path& file, const Json& root) {
+  if (!root.contains("description")) return "";
+  const Json& text = root["description"];
+  if (!text.is_string()) Field(file, "description", text).failHere("must be a text, not {}", inShort(text));
+  return text.get<std::string>();
+}
+
+TransferCurves makeCurves(const fs::path& file, const Json& root) {
   checkKeys(file, root);
-  const std::array<double, 2> range = readRange(file, root, volume);
-  const auto toScalar = [&](double x) { return float(range[0] + x * (range[1] - range[0])); };
-
-  TransferFunction transfer;
-  transfer.unitDistance = readUnitDistance(file, root, volume);
-  for (const auto& [x, alpha] : Field(file, "opacity", root["opacity"]).points<2>())
-    transfer.opacity.push_back({toScalar(x), float(alpha)});
-  if (!root.contains("color")) {
-    transfer.color.push_back({toScalar(0.0), glm::vec3(1.0f)});
-    return transfer;
-  }
-  for (const auto& [x, r, g, b] : Field(file, "color", root["color"]).points<4>())
-    transfer.color.push_back({toScalar(x), glm::vec3(float(r), float(g), float(b))});
-  return transfer;
+  TransferCurves curves;
+  readRange(file, root, curves);
+  curves.unitDistance = readLength(file, root, "unit_distance");
+  curves.unitShare = readLength(file, root, "unit_share");
+  curves.description = readDescription(file, root);
+  if (curves.unitDistance && curves.unitShare)
+    fail(ErrorKind::Input, "transfer function '{}' has \"unit_distance\" and \"unit_share\", which both say what opacity is of: keep one",
+         file.string());
+  for (const auto& [x, alpha] : Field(file, "opacity", root["opacity"]).points<2>()) curves.opacity.push_back({x, alpha});
+  if (root.contains("color"))
+    for (const auto& [x, r, g, b] : Field(file, "color", root["color"]).points<4>()) curves.color.push_back({x, {r, g, b}});
+  return curves;
 }
 
 /// The double with the fewest digits that rounds to this float.
@@ -129,12 +142,12 @@ double shortest(float value) {
 
 }  // namespace
 
-TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume) {
-  return makeTransferFunction(file, readJson("transfer function", file), volume);
+TransferCurves parseTransferCurves(const std::string& name, const std::string& json) {
+  return makeCurves(name, parseJson("transfer function", name, json));
 }
 
 TransferFunction parseTransferFunction(const std::string& json, const Volume& volume) {
-  return makeTransferFunction("inline", parseJson("transfer function", "inline", json), volume);
+  return fitted(parseTransferCurves("inline", json), volume);
 }
 
 std::string transferFunctionJson(const TransferFunction& function) {
@@ -149,6 +162,22 @@ std::string transferFunctionJson(const TransferFunction& function) {
     root["color"].push_back({(point.scalar - low) / width, shortest(point.color.r), shortest(point.color.g), shortest(point.color.b)});
   root["unit_distance"] = function.unitDistance;
   return root.dump();
+}
+
+std::string transferCurvesJson(const TransferCurves& curves) {
+  const auto rounded = [](double value) { return std::stod(fmt::format("{:.6g}", value)); };
+  nlohmann::ordered_json root;
+  if (!curves.description.empty()) root["description"] = curves.description;
+  if (curves.range == TransferCurves::Range::Values) root["range"] = {curves.window.low, curves.window.high};
+  if (curves.range == TransferCurves::Range::Usual) root["range"] = kUsualRange;
+  for (const auto& [x, opacity] : curves.opacity) root["opacity"].push_back({rounded(x), rounded(opacity)});
+  for (const auto& [x, color] : curves.color) root["color"].push_back({rounded(x), rounded(color.r), rounded(color.g), rounded(color.b)});
+  if (curves.unitDistance) root["unit_distance"] = *curves.unitDistance;
+  if (curves.unitShare) root["unit_share"] = *curves.unitShare;
+  std::vector<std::string> lines;
+  for (const auto& [key, value] : root.items())
+    lines.push_back(fmt::format("  \"{}\": {}", key, value.dump(-1, ' ', false, Json::error_handler_t::replace)));
+  return fmt::format("{{\n{}\n}}\n", fmt::join(lines, ",\n"));
 }
 
 }  // namespace freevoxels

@@ -66,6 +66,14 @@ constexpr WrongUse kWrongUses[] = {
     {"NanScale", "render procedural:cube @a.png --density-scale nan", "--density-scale"},
     {"BrightAlbedo", "render procedural:cube @a.png --albedo 2,0,0", "--albedo"},
     {"TwoClassifications", "render procedural:cube @a.png --albedo 1,0,0 --transfer-function @t.json", "--albedo"},
+    {"WindowOfDensities", "render procedural:cube @a.png --density-scale 2 --window 1,2", "--window"},
+    {"WindowWithoutWidth", "render procedural:cube @a.png --window 40,0", "--window"},
+    {"WindowUpsideDown", "render procedural:cube @a.png --window 3..2", "--window"},
+    {"WindowOfOneNumber", "render procedural:cube @a.png --window 3", "CENTER,WIDTH|LO..HI"},
+    {"NoOpacity", "render procedural:cube @a.png --opacity 0", "--opacity"},
+    {"NothingToInvert", "render procedural:cube @a.png --resolution 4 --invert", "--invert"},
+    {"ConversionWithoutOutput", "convert-tf viridis", "OUT.json"},
+    {"ConversionToXml", "convert-tf viridis @a.xml", ".json"},
     {"UnknownComposite", "render procedural:cube @a.png --composite summed", "'summed'"},
     {"UnknownAttenuation", "render procedural:cube @a.png --attenuation cubic", "'cubic'"},
     {"UnknownCode", "render procedural:cube @a.png --code float", "'float'"},
@@ -112,8 +120,7 @@ INSTANTIATE_TEST_SUITE_P(Commands, Usage, testing::ValuesIn(kWrongUses),
 }  // namespace
 
 TEST_F(CommandTest, EveryCommandHasHelpWithItsOptions) {
-  for (const char* command :
-       {"", "render", "turntable", "oracle", "compare", "info", "generate", "devices"}) {
+  for (const char* command : {"", "render", "turntable", "oracle", "compare", "info", "generate", "presets", "convert-tf", "devices"}) {
     const ProgramResult result = run(std::string(command) + " --help");
     expectSuccess(result);
     EXPECT_NE(result.out.find("--help"), std::string::npos);
@@ -144,7 +151,7 @@ TEST_F(CommandTest, NamesOfPositionalsAreWords) {
       ++names;
     }
   };
-  for (const char* command : {"render", "turntable", "merge", "oracle", "compare", "info", "generate", "bake", "devices"})
+  for (const char* command : {"render", "turntable", "merge", "oracle", "compare", "info", "generate", "bake", "convert-tf", "devices"})
     check(FREEVOXELS_PROGRAM, {command, "--help"});
   for (const char* program : {FREEVOXELS_VALIDATE_PROGRAM, FREEVOXELS_VIEW_PROGRAM}) check(program, {"--help"});
   EXPECT_GE(names, 12u);

@@ -93,7 +93,7 @@ def unknown_options(root, page, known):
         if not words or not re.match(r"(freevoxels[\w-]*$|-)", words[0]):
             continue
         command = words[0] if words[0].startswith("freevoxels") else ""
-        if command == "freevoxels" and len(words) > 1 and re.fullmatch(r"[a-z]+", words[1]):
+        if command == "freevoxels" and len(words) > 1 and re.fullmatch(r"[a-z][a-z-]*", words[1]):
             command += " " + words[1]
         if " " in command and command not in known:
             yield f"{page.relative_to(root)}: there is no command '{command}'"

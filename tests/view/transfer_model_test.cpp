@@ -58,6 +58,14 @@ TEST(TransferModel, ReadsFilesAndRefusesWhatTheProgramsRefuse) {
   EXPECT_THROW(TransferModel::read(R"({"opacity": [[0, 2]]})", smallVolume()), Error);
 }
 
+TEST(TransferModel, ReadsPresetsWithTheirRangeForTheVolume) {
+  const TransferModel bone = TransferModel::read("ct-bone", smallVolume()), map = TransferModel::read("viridis", smallVolume());
+  EXPECT_EQ(bone.range, glm::dvec2(130.0, 1500.0));
+  EXPECT_EQ(bone.unitDistance, 1.0);
+  EXPECT_EQ(map.range, glm::dvec2(2.0, 6.0));
+  EXPECT_NEAR(*map.unitDistance, 2.5 / 128.0, 1e-9);
+}
+
 TEST(TransferModel, IsLinearBetweenItsPointsAndConstantBeyond) {
   const TransferModel model{.opacity = {{0.25, 0.2}, {0.75, 0.6}},
                             .color = {{0.5, {1.0, 0.0, 0.0}}, {1.0, {0.0, 1.0, 0.0}}}};
@@ -123,14 +131,12 @@ TEST(TransferModel, OtherCurvesKeepRangeAndUnitDistance) {
 }
 
 TEST(TransferModel, TheWindowMovesWithinTheValues) {
-  TransferModel model;
-  const glm::dvec2 all(0.0, 100.0);
-  model.moveWindow(all, {-50.0, 10.0});
-  EXPECT_EQ(model.range, glm::dvec2(35.0, 85.0)) << "half as wide, about a higher level";
-  model.moveWindow(all, {0.0, 1000.0});
-  EXPECT_EQ(model.range, glm::dvec2(75.0, 125.0)) << "the level is at most the largest value";
-  model.moveWindow(all, {-1000.0, 0.0});
-  EXPECT_LT(model.range->x, model.range->y);
+  const ValueWindow all{0.0, 100.0}, half = movedWindow(all, all, {-50.0, 10.0});
+  EXPECT_EQ(half, (ValueWindow{35.0, 85.0})) << "half as wide, about a higher level";
+  const ValueWindow high = movedWindow(half, all, {0.0, 1000.0});
+  EXPECT_EQ(high, (ValueWindow{75.0, 125.0})) << "the level is at most the largest value";
+  const ValueWindow narrow = movedWindow(high, all, {-1000.0, 0.0});
+  EXPECT_LT(narrow.low, narrow.high);
 }
 
 }  // namespace

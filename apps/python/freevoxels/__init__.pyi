@@ -62,7 +62,10 @@ class _Classification(TypedDict, total=False):
     density_scale: float
     albedo: _Triple
     albedo_grid: str
-    transfer_function: _Path | Mapping[str, Any]
+    transfer_function: _Path | Mapping[str, Any]  # a preset's name, a file, "FILE:NAME", or an object
+    window: _Pair  # (center, width), or "LO..HI"
+    opacity: float
+    invert: bool
     classification: Literal["post", "pre"] | _Section
     iso: _Numbers
     labels: _Numbers
