@@ -68,7 +68,7 @@ TransferCurves curvesOf(const TransferFunction& function);
 
 /// From the JSON of apps/manual/classification.md. `name` is what sentences call the text. Fails with ErrorKind::Input.
 TransferCurves parseTransferCurves(const std::string& name, const std::string& json);
-/// Such JSON, a key on each line; numbers are rounded to six digits.
+/// Such JSON, a key on each line; opacities and colours are rounded to six digits.
 std::string transferCurvesJson(const TransferCurves& curves);
 
 }  // namespace freevoxels

@@ -165,13 +165,14 @@ std::string transferFunctionJson(const TransferFunction& function) {
 }
 
 std::string transferCurvesJson(const TransferCurves& curves) {
+  const auto placed = [](double x) { return std::stod(fmt::format("{:.9g}", x)); };  // so that the sides of jumps stay apart
   const auto rounded = [](double value) { return std::stod(fmt::format("{:.6g}", value)); };
   nlohmann::ordered_json root;
   if (!curves.description.empty()) root["description"] = curves.description;
   if (curves.range == TransferCurves::Range::Values) root["range"] = {curves.window.low, curves.window.high};
   if (curves.range == TransferCurves::Range::Usual) root["range"] = kUsualRange;
-  for (const auto& [x, opacity] : curves.opacity) root["opacity"].push_back({rounded(x), rounded(opacity)});
-  for (const auto& [x, color] : curves.color) root["color"].push_back({rounded(x), rounded(color.r), rounded(color.g), rounded(color.b)});
+  for (const auto& [x, opacity] : curves.opacity) root["opacity"].push_back({placed(x), rounded(opacity)});
+  for (const auto& [x, color] : curves.color) root["color"].push_back({placed(x), rounded(color.r), rounded(color.g), rounded(color.b)});
   if (curves.unitDistance) root["unit_distance"] = *curves.unitDistance;
   if (curves.unitShare) root["unit_share"] = *curves.unitShare;
   std::vector<std::string> lines;

@@ -119,7 +119,7 @@ struct Way {
   double first, last;                                ///< x of its ends
   std::function<Value(double)> at;                   ///< the value at a place 0..1
   std::optional<double> step;                        ///< the place of a step, between which and its ends values do not change
-  double bend = 0.5;                                 ///< a place at which the way may have a bend
+  double bend = 1.0;                                 ///< a place at which the way may have a bend
   int fewest = 0;                                    ///< halvings at least
 };
 
@@ -153,7 +153,8 @@ template <typename Value>
 void addWay(Placed<Value>& points, const Way<Value>& way) {
   if (!way.step) {
     addPlaces(points, way, 0.0, way.bend, 0);
-    return addPlaces(points, way, way.bend, 1.0, 0);
+    if (way.bend < 1.0) addPlaces(points, way, way.bend, 1.0, 0);
+    return;
   }
   const double x = std::lerp(way.first, way.last, *way.step);
   points.emplace_back(x, way.at(0.0));
@@ -231,11 +232,17 @@ bool isStep(const Point& point) {
   return point.sharpness > 0.99;
 }
 
+/// The place at which the way behind a point may have a bend; its end where there is none.
+template <typename Point>
+double bendOf(const Point& point) {
+  return point.midpoint == 0.5 && point.sharpness == 0.0 ? 1.0 : point.midpoint;
+}
+
 Placed<double> opacityPlaces(const std::vector<FileOpacity>& points, const ValueWindow& window) {
   const auto wayOf = [](const FileOpacity& a, const FileOpacity& b) {
     Way<double> way;
     way.at = [a, b](double place) { return std::lerp(a.opacity, b.opacity, shapedPlace(place, a.midpoint, a.sharpness)); };
-    way.bend = a.midpoint;
+    way.bend = bendOf(a);
     if (isStep(a)) way.step = a.midpoint;
     return way;
   };
@@ -248,7 +255,7 @@ Placed<glm::dvec3> colorPlaces(const std::vector<FileColor>& points, const Value
     way.at = [a, b, space](double place) {
       return linearOf(interpolatedColor(space, a.color, b.color, shapedPlace(place, a.midpoint, a.sharpness)));
     };
-    way.bend = a.midpoint;
+    way.bend = bendOf(a);
     if (isStep(a)) way.step = a.midpoint;
     if (space == ColorSpace::Step) {
       way.step = 0.0;

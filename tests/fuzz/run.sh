@@ -1,13 +1,13 @@
 #!/usr/bin/env bash
 # Fuzzes the readers of files, all at the same time, for so many seconds: needs Clang, which apps/setup.sh all installs.
-#   bash tests/fuzz/run.sh SECONDS [vdb|exr|png|json|fvx|vti|zarr|tiff|text]...     3600 for an hour each
+#   bash tests/fuzz/run.sh SECONDS [vdb|exr|png|json|fvx|transfer|vti|zarr|tiff|text]...     3600 for an hour each
 # The tests replay the seeds with a hundred mutations each, without Clang and without sanitizers.
 # What was found is kept in build-fuzz/corpus and begins the next run; a file that fails is in build-fuzz/failures.
 set -euo pipefail
 seconds="${1:?say for how many seconds}"
 shift
 kinds=("$@")
-[ $# -gt 0 ] || kinds=(vdb exr png json fvx vti zarr tiff text)
+[ $# -gt 0 ] || kinds=(vdb exr png json fvx transfer vti zarr tiff text)
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 build="$here/../../build-fuzz"
 

@@ -1,4 +1,4 @@
-// Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json,fvx}, and of
+// Writes small valid files for the fuzzers to begin with: seeds FOLDER, into FOLDER/{vdb,exr,png,json,fvx,transfer}, and of
 // scans into FOLDER/{vti,zarr,tiff,text}.
 
 #include <ImfChannelList.h>
@@ -131,6 +131,27 @@ void writeFunctions(const fs::path& folder) {
   std::ofstream(folder / "deep.json") << R"({"light": {"ambient": )" << std::string(kDeep, '[') << std::string(kDeep, ']') << "}}";
 }
 
+/// Transfer functions of other programs, a file for each format.
+void writeForeignFunctions(const fs::path& folder) {
+  std::ofstream(folder / "paraview.json") << R"([{"Name": "A", "ColorSpace": "Diverging", "RGBPoints": [-1, 0.2, 0.3, 0.8, 1, 0.7, 0, 0.1],
+    "Points": [0, 0, 0.3, 0.5, 9, 1, 0.5, 1]}, {"Name": "B", "ColorSpace": "HSV", "IndexedColors": [1, 0, 0, 0, 1, 0], "UseLogScale": 1}])";
+  std::ofstream(folder / "volview.json")
+      << R"([{"Name": "A", "AbsoluteRange": true, "ColorSpace": "Lab", "OpacityPoints": [-3024, 0, -16, 0.5],
+    "RGBPoints": [-3024, 0, 0, 0, -16, 0.7, 0.2, 0.3]}])";
+  std::ofstream(folder / "slicer.vp.json") << R"({"volumeProperties": [{"components": [{"scalarOpacityUnitDistance": 2,
+    "scalarOpacity": {"points": [{"x": 0, "y": 0, "midpoint": 0.5, "sharpness": 1}, {"x": 1, "y": 1}]},
+    "rgbTransferFunction": {"points": [{"x": 0, "color": [1, 0, 0], "midpoint": 0.2, "sharpness": 0.4}]}}]}]})";
+  std::ofstream(folder / "slicer.xml") << R"(<MRML><VolumeProperty name="A" scalarOpacity="4 0 0 10 1" colorTransfer="4 0 1 0 0"
+    gradientOpacity="4 0 0 1 1"/></MRML>)";
+  std::ofstream(folder / "slicer.vp") << "1\n1\n0.9\n0.1\n0.2\n10\n4 -100 0 300 0.5\n4 0 1 255 1\n4 -100 0 0 0\n";
+  std::ofstream(folder / "table.1dt") << "3\n0 0 0 0\n1 0 0 0.5\n1 1 1 0.25\n";
+  std::ofstream(folder / "inviwo.itf") << R"(<InviwoTransferFunction><type content="0"/><maskMin content="0.2"/><TFPrimitives><TFPrimitive>
+    <pos content="0.25"/><rgba x="0" y="0.5" z="1" w="0.1"/></TFPrimitive></TFPrimitives></InviwoTransferFunction>)";
+  std::ofstream(folder / "voreen.tfi") << R"(<VoreenData><TransFuncIntensity><domain x="-1" y="3"/><threshold x="0.1" y="0.9"/><Keys><key>
+    <intensity value="0.5"/><split value="true"/><colorL r="255" g="0" b="0" a="51"/><colorR r="0" g="0" b="255" a="255"/></key></Keys>
+    </TransFuncIntensity></VoreenData>)";
+}
+
 /// Sizes that end inside of bricks and chunks along every axis, with one chunk and with several, and with up to three levels.
 constexpr glm::ivec3 kBakedSizes[]{{40, 9, 8}, {1, 1, 1}, {38, 26, 31}, {33, 65, 9}, {7, 34, 67}, {65, 12, 33}};
 
@@ -228,10 +249,11 @@ void writeVtiImages(const fs::path& folder) {
 
 int main(int argc, char** argv) {
   const fs::path folder = argc > 1 ? argv[1] : ".";
-  for (const char* kind : {"vdb", "exr", "png", "json", "fvx", "vti", "zarr", "tiff", "text"}) fs::create_directories(folder / kind);
+  for (const char* kind : {"vdb", "exr", "png", "json", "fvx", "transfer", "vti", "zarr", "tiff", "text"}) fs::create_directories(folder / kind);
   writeVolumes(folder / "vdb");
   writeImages(folder);
   writeFunctions(folder / "json");
+  writeForeignFunctions(folder / "transfer");
   writeBakedVolumes(folder / "fvx");
   writeVtiImages(folder / "vti");
   writeHierarchies(folder / "zarr");

@@ -198,6 +198,25 @@ class RenderTest(unittest.TestCase):
         self.assertGreater(image[20, 20, 0], 0.3)
         self.assertEqual(image[..., 1:3].max(), 0)
 
+    def test_presets_and_maps_of_other_programs_with_windows(self):
+        draw = lambda **options: freevoxels.render(blob(), unlit=True, size=(40, 40), **options)
+        own = {"range": [0.2, 0.8], "opacity": [[0, 0], [1, 0.5]], "color": [[0, 0, 0, 1], [1, 1, 0, 0]], "unit_distance": 0.5}
+        turned = {"range": [0, 1], "opacity": [[0, 0], [1, 0.5]], "color": [[0, 1, 0, 0], [1, 0, 0, 1]], "unit_distance": 1}
+        np.testing.assert_array_equal(draw(transfer_function=turned, window=(0.5, 0.6), opacity=2, invert=True), draw(transfer_function=own))
+        np.testing.assert_array_equal(draw(transfer_function="Viridis", window="0..1"), draw(transfer_function="viridis", window=(0.5, 1)))
+        np.testing.assert_array_equal(draw(window=(0.5, 1)), draw(transfer_function="grey", window=[0.5, 1]))
+        paraview = {"Name": "red", "RGBPoints": [0, 1, 0, 0, 1, 1, 0, 0]}
+        self.assertEqual(draw(transfer_function=paraview)[..., 1:3].max(), 0)
+        with self.assertRaisesRegex(freevoxels.InputError, "did you mean 'viridis'"):
+            draw(transfer_function="viridid")
+
+    def test_scenes_keep_presets_and_windows(self):
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "scene.json"
+            freevoxels.save_scene(file, volume="procedural:cloud", transfer_function="ct-bone", window=(40, 400), invert=True)
+            self.assertEqual(freevoxels.load_scene(file)["classification"],
+                             {"transfer-function": "ct-bone", "window": "-160..240", "invert": True})
+
 
 class RendererTest(unittest.TestCase):
     def test_frames_are_those_of_separate_renders(self):
