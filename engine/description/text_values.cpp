@@ -142,7 +142,8 @@ ValueWindow readWindow(const std::string& name, const std::string& text) {
     window = {readNumbers(end, text.substr(0, dots))[0], readNumbers(end, text.substr(dots + kDots.size()))[0]};
   } else {
     const auto n = readNumbers({.name = name, .form = kWindowForm, .count = 2, .range = {-1e30, 1e30}}, text);
-    window = {n[0] - 0.5 * n[1], n[0] + 0.5 * n[1]};
+    const auto decimal = [](double end) { return std::stod(fmt::format("{:.15g}", end)); };  // 0.5,0.8 is 0.1..0.9
+    window = {decimal(n[0] - 0.5 * n[1]), decimal(n[0] + 0.5 * n[1])};
   }
   if (!(float(window.low) < float(window.high)))
     fail(ErrorKind::Usage, "{} '{}' has no width: give CENTER,WIDTH with a width above 0, or LO..HI with LO below HI", name,
