@@ -13,6 +13,13 @@ namespace {
 /// Too little for a display to show.
 constexpr float kInvisibleOpacity = 1e-6f;
 
+/// Makes the largest opacity 1: those of most functions are of a length, and a projection shows a single value.
+void makeOpaque(TransferFunction& function) {
+  const float most = std::ranges::max(function.opacity, {}, &TransferFunction::OpacityPoint::opacity).opacity;
+  if (most == 0.0f) return;
+  for (TransferFunction::OpacityPoint& point : function.opacity) point.opacity /= most;
+}
+
 /// Changes a function so that values in which nothing is seen count in a mean: transparent voxels are not stored, and a function's table
 /// resolves values only near its points.
 void keepAllValues(TransferFunction& function, const Volume& volume) {
@@ -102,6 +109,7 @@ Classification ClassificationDescription::resolveProjected(const Volume& volume,
     classification.transferFunction = changed(*volume.classification->transferFunction, change());
   else
     classification.transferFunction = changed(intensityFunction(volume, projection), change());
+  makeOpaque(*classification.transferFunction);
   if (projection == IntensityProjection::Average) keepAllValues(*classification.transferFunction, volume);
   return classification;
 }

@@ -94,6 +94,16 @@ TEST(Projection, KeepsValuesThatItsFunctionHidesForAMean) {
   EXPECT_NEAR(classify(average, 0.55f).extinction, classify(maximum, 0.55f).extinction, 1e-4);
 }
 
+TEST(Projection, MakesTheMostOpaqueValueOpaque) {
+  const Volume volume = waves();
+  const ClassificationDescription map{.transferFunction = "viridis"};
+  const TransferFunction drawn = *map.resolve(volume, false).transferFunction;
+  const TransferFunction shown = *map.resolveProjected(volume, IntensityProjection::Maximum).transferFunction;
+  EXPECT_LT(drawn.opacity.back().opacity, 0.5f);
+  EXPECT_EQ(shown.opacity.back().opacity, 1.0f);
+  EXPECT_EQ(shown.color.back().color, drawn.color.back().color);
+}
+
 TEST(Projection, RefusesWhatHasNoPartInIt) {
   const Volume volume = waves();
   const auto refused = [&](const ClassificationDescription& given, const char* name) {
