@@ -148,14 +148,17 @@ void SceneDescription::check() const {
 }
 
 Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
-  ReadRequest what{.channels = classification.channels, .imageEdge = std::max(camera.size.x, camera.size.y)};
-  what.more.mayBeMissing = isFrame;
+  MoreGrids more{.mayBeMissing = isFrame};
   if (!method.isProjected()) {
-    what.more.temperature = emission.grid();
-    what.more.albedo = classification.grid();
-    what.labels = classification.labelRequest();
+    more.temperature = emission.grid();
+    more.albedo = classification.grid();
   }
-  return input.open(maximumVoxels, what, level, progress);
+  return input.open(maximumVoxels,
+                    {.more = std::move(more),
+                     .labels = method.isProjected() ? LabelRequest() : classification.labelRequest(),
+                     .channels = classification.channels,
+                     .imageEdge = std::max(camera.size.x, camera.size.y)},
+                    level, progress);
 }
 
 std::shared_ptr<const VolumeSource> SceneDescription::openSource(int frameCount, bool mayStayFile, bool isFrame,
