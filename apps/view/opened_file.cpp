@@ -18,7 +18,7 @@ namespace freevoxels {
 
 namespace {
 
-/// Of transfer functions of other programs; those in JSON are told by what is in them.
+/// How files with transfer functions of other programs end; those in JSON are told by what is in them.
 constexpr std::array kFunctionEndings{".vp", ".xml", ".mrml", ".1dt", ".itf", ".tfi"};
 
 bool hasExtension(const std::string& file, const char* extension) {

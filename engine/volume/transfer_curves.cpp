@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <utility>
 
 #include "engine/volume/scan.h"
 
@@ -61,7 +62,9 @@ TransferFunction changed(TransferFunction function, const TransferChange& change
   const double unitDistance = function.unitDistance / change.opacity;
   if (change.window || change.inverted) {
     const TransferCurves curves = curvesOf(function);
-    function = placed(curves, change.window.value_or(curves.window), change.inverted);
+    TransferFunction other = placed(curves, change.window.value_or(curves.window), change.inverted);
+    function.color = std::move(other.color);
+    if (change.window) function.opacity = std::move(other.opacity);  // which otherwise stay to the last bit
   }
   function.unitDistance = unitDistance;
   return function;

@@ -54,7 +54,7 @@ std::string presetSpelling(std::string_view name) {
   return spelled;
 }
 
-/// Of a text that is neither a file nor a preset.
+/// Refuses a text that is neither a file nor a preset.
 [[noreturn]] void failUnknown(const std::string& text) {
   std::error_code error;
   if (text.find_first_of("./\\") != text.npos || text.empty() || fs::exists(text, error)) checkInputFile(kKind, text);

@@ -24,7 +24,7 @@ double numberOf(xml_node node, const char* attribute, std::optional<double> usua
   return found ? found.as_double(std::numeric_limits<double>::quiet_NaN()) : std::numeric_limits<double>::quiet_NaN();
 }
 
-/// Of values beyond `mask` nothing is drawn.
+/// Makes values beyond `mask` transparent.
 void maskOpacity(std::vector<FileOpacity>& points, const ValueWindow& mask, const ValueWindow& all) {
   if (points.empty() || (mask.low <= all.low && mask.high >= all.high) || !(mask.low < mask.high)) return;
   std::ranges::stable_sort(points, {}, &FileOpacity::scalar);

@@ -78,7 +78,7 @@ TEST_F(Viewer, ThePanelsValuesAreDraggedAndAFinishedImageIsShownBrighterWithoutD
   };
   const std::string before = session->save('s', "before.png");
   const int drawn = wholeImages();
-  session->hands("mousemove 228 463 mousedown 1 mousemove 240 463 mousemove 262 463 mouseup 1 mousemove 700 300");
+  session->hands("mousemove 228 437 mousedown 1 mousemove 240 437 mousemove 262 437 mouseup 1 mousemove 700 300");
   EXPECT_NE(session->save('s', "brighter.png"), before);
   EXPECT_GT(sceneOf(*session, "brighter.json").at("output").at("exposure"), 0.5);
   EXPECT_EQ(wholeImages(), drawn);

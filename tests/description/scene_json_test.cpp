@@ -82,6 +82,9 @@ SceneDescription others(const TemporaryFolder& folder) {
   scene.input.pyramidLevel = 2;
   scene.camera.holdout = (folder / "depth.exr").string();
   scene.classification.transferFunction = R"({"opacity":[[0,0],[1,0.5]]})";
+  scene.classification.window = ValueWindow{-160.0, 240.1};
+  scene.classification.opacity = 0.3;
+  scene.classification.invert = true;
   scene.emission.emission = true;
   scene.camera.orbit = glm::dvec2(10.0, -20.0);
   scene.camera.orthographicHeight = 2.5;
@@ -91,7 +94,8 @@ SceneDescription others(const TemporaryFolder& folder) {
   added.classification.transferFunction = (folder / "f.json").string();
   added.emission.emission = false;
   (*added.transform)[3] = {0.1, 2.0, 1e-7, 1.0};
-  scene.added = {added, AddedVolume{.input = {.volume = "procedural:fire", .resolution = glm::ivec3(9)}}};
+  scene.added = {added, AddedVolume{.input = {.volume = "procedural:fire", .resolution = glm::ivec3(9)},
+                                    .classification = {.transferFunction = "ct-bone"}}};
   return scene;
 }
 
@@ -107,6 +111,13 @@ SceneDescription dyed() {
   return scene;
 }
 
+SceneDescription surface() {
+  SceneDescription scene;
+  scene.classification.iso = IsoSurface{.value = -0.25, .color = {0.5, 0.25, 1.0}};
+  scene.method.mode = IntensityProjection::Average;
+  return scene;
+}
+
 nlohmann::json jsonIn(const std::filesystem::path& file) {
   return nlohmann::json::parse(readBytes(file));
 }
@@ -115,7 +126,7 @@ nlohmann::json jsonIn(const std::filesystem::path& file) {
 
 TEST(SceneJson, DescriptionsSurviveTheWayToAFileAndBack) {
   const TemporaryFolder folder;
-  for (const SceneDescription& scene : {everything(folder), others(folder), labelled(), dyed(), SceneDescription{}}) {
+  for (const SceneDescription& scene : {everything(folder), others(folder), labelled(), dyed(), surface(), SceneDescription{}}) {
     writeScene(folder / "s.json", scene);
     EXPECT_EQ(readScene(folder / "s.json"), scene) << readBytes(folder / "s.json");
   }
@@ -141,7 +152,7 @@ TEST(SceneJson, AKeyWithoutEffectOfAnEarlierVersionIsReadWithOneSentence) {
 
 TEST(SceneJson, TheTestsAboveHaveEveryField) {
   const TemporaryFolder folder;
-  const std::array scenes{everything(folder), others(folder), labelled(), dyed()};
+  const std::array scenes{everything(folder), others(folder), labelled(), dyed(), surface()};
   for (const SceneField& field : sceneFields())
     EXPECT_TRUE(std::ranges::any_of(scenes, [&](const SceneDescription& scene) { return !field.texts(scene).empty(); }))
         << field.section << "." << field.name;

@@ -106,12 +106,12 @@ TEST_F(OpenedFile, ATransferFunctionTakesThePlaceOfDensities) {
 
 TEST_F(OpenedFile, AFunctionOfAnotherProgramIsOne) {
   const std::string table = made("table.1dt", "1\n1 1 1 0.5\n"), map = made("map.json", R"([{"RGBPoints": [0, 1, 0, 0]}])");
+  expectRefused(made("two.json", R"([{"Name": "A", "RGBPoints": []}, {"Name": "B", "RGBPoints": []}])"), {"two.json", "A, B"});
   openFile(state, table);
   EXPECT_EQ(state.scene.classification.transferFunction, table);
   openFile(state, map);
   EXPECT_EQ(state.scene.classification.transferFunction, map);
   EXPECT_FALSE(isWorthRemembering(table));
-  expectRefused(made("two.json", R"([{"Name": "A", "RGBPoints": []}, {"Name": "B", "RGBPoints": []}])"), {"two.json", "A, B"});
 }
 
 TEST_F(OpenedFile, AnImageIsTheLightAround) {

@@ -116,6 +116,16 @@ TEST(FittedFunction, OfAnInvertedOneHasItsColoursTurnedRound) {
   EXPECT_EQ(changed(function, {.inverted = true}).color[0].color, glm::vec3(1, 0, 0));
 }
 
+TEST(FittedFunction, ThatIsInvertedKeepsItsOpacitiesToTheLastBit) {
+  const TransferFunction function{.opacity = {{0.1f, 0.2f}, {0.7f, 0.4f}},
+                                  .color = {{0.2f, glm::vec3(1, 0, 0)}, {0.9f, glm::vec3(0, 0, 1)}}};
+  const TransferFunction turned = changed(function, {.inverted = true});
+  EXPECT_EQ(turned.opacity[1].scalar, 0.7f);
+  EXPECT_EQ(turned.color[0].color, glm::vec3(0, 0, 1));
+  EXPECT_NEAR(turned.color[0].scalar, 0.1f, 1e-6f);
+  EXPECT_NEAR(turned.color[1].scalar, 0.8f, 1e-6f);
+}
+
 TEST(FittedFunction, StaysAsItIsWithoutChanges) {
   const TransferFunction function{.opacity = {{0.1f, 0.2f}, {0.3f, 0.4f}}, .color = {{0.7f, glm::vec3(0.1f)}}, .unitDistance = 0.3};
   EXPECT_EQ(transferFunctionJson(changed(function, {})), transferFunctionJson(function));
