@@ -16,6 +16,7 @@
 #include "engine/core/input_file.h"
 #include "engine/core/machine.h"
 #include "engine/core/printable.h"
+#include "engine/volume/histogram.h"
 #include "engine/volume/scan_reader.h"
 #include "engine/volume/volume_of_scalars.h"
 
@@ -201,6 +202,29 @@ void space(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
   }
 }
 
+/// The window of a channel of which neither the file nor the user says one: from the end of the background, whose noise reaches as far
+/// above the most frequent value as below it, to the value that one voxel in a thousand exceeds. Nothing where most voxels are above that.
+std::optional<std::array<float, 2>> windowAboveBackground(const ScalarBricks& values) {
+  constexpr int kBins = 4096;
+  constexpr double kTail = 0.001, kMostAbove = 0.5;  // parts of the voxels
+  Volume channel{.dimensions = values.dimensions(), .scalars = values};
+  summariseValues(channel);
+  if (!(channel.minimum < channel.maximum)) return std::nullopt;
+  const Histogram histogram = histogramOf(channel, kBins);
+  const auto binBelow = [&](double part) {
+    double count = 0.0;
+    int bin = 0;
+    while (bin + 1 < kBins && count + double(histogram.counts[std::size_t(bin)]) < part * double(channel.activeVoxels))
+      count += double(histogram.counts[std::size_t(bin++)]);
+    return bin;
+  };
+  const int mode = int(std::ranges::max_element(histogram.counts) - histogram.counts.begin());
+  const int begin = 2 * mode - std::min(binBelow(kTail), mode) + 1, end = binBelow(1.0 - kTail) + 1;
+  if (begin >= end || binBelow(1.0 - kMostAbove) >= begin) return std::nullopt;
+  const auto valueAt = [&](int bin) { return std::lerp(channel.minimum, channel.maximum, float(bin) / float(kBins)); };
+  return std::array{valueAt(begin), valueAt(end)};
+}
+
 struct Opened {
   std::unique_ptr<ScanReader> reader;
   ScanHeader header;
@@ -308,7 +332,7 @@ Volume readScan(const fs::path& file, const ScanRequest& request) {
   return guarded(file, [&] {
     Opened opened = openScan(file, request);
     ScanHeader& header = opened.header;
-    const ChosenChannels chosen = chosenChannels(file, header, request);
+    ChosenChannels chosen = chosenChannels(file, header, request);
     checkSize(file, opened, request.maximumVoxels, chosen.numbers.size());
     const auto read = [&](int channel) {
       ScanVoxels voxels(header.dimensions);
@@ -326,7 +350,10 @@ Volume readScan(const fs::path& file, const ScanRequest& request) {
           volumeOfScalars(read(channel), header.indexToWorld, request.noData, array.empty() ? name : name + " " + array, request.labels);
     } else {
       std::vector<ScalarBricks> values;
-      for (const int channel : chosen.numbers) values.push_back(read(channel));
+      for (std::size_t i = 0; i < chosen.numbers.size(); ++i) {
+        values.push_back(read(chosen.numbers[i]));
+        if (!chosen.styles[i].window) chosen.styles[i].window = windowAboveBackground(values[i]);
+      }
       volume = volumeOfChannels(std::move(values), header.indexToWorld, chosen.styles, name);
     }
     volume.remarks.insert(volume.remarks.begin(), header.remarks.begin(), header.remarks.end());

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <fstream>
+#include <glm/gtc/quaternion.hpp>
 #include <limits>
 #include <span>
 #include <stdexcept>
@@ -69,6 +71,28 @@ void place(std::array<std::byte, 352>& header, std::size_t at, Value value) {
   std::memcpy(header.data() + at, &value, sizeof(Value));
 }
 
+/// The directions as a quaternion, where they are orthogonal: readers that take the affine map for sheared, as its numbers are small, have
+/// these.
+void placeQuaternion(std::array<std::byte, 352>& header, const Volume& volume) {
+  constexpr double kOrthogonal = 1e-5;
+  constexpr std::int16_t kScanner = 1;
+  glm::dmat3 directions;
+  for (int axis = 0; axis < 3; ++axis)
+    directions[axis] = glm::normalize(glm::dvec3(volume.indexToWorld[axis])) * glm::dvec3(-1.0, -1.0, 1.0);
+  const double skew = std::abs(glm::dot(directions[0], directions[1])) + std::abs(glm::dot(directions[1], directions[2])) +
+                      std::abs(glm::dot(directions[2], directions[0]));
+  if (!(skew < kOrthogonal)) return;
+  const bool isMirrored = glm::determinant(directions) < 0.0;
+  if (isMirrored) directions[2] = -directions[2];
+  glm::dquat turn = glm::quat_cast(directions);
+  if (turn.w < 0.0) turn = -turn;
+  place(header, 76, isMirrored ? -1.0f : 1.0f);
+  place(header, 252, kScanner);
+  for (const auto& [at, value] : {std::pair(256, turn.x), std::pair(260, turn.y), std::pair(264, turn.z)})
+    place(header, std::size_t(at), float(value));
+  for (int row = 0; row < 3; ++row) place(header, 268 + 4 * std::size_t(row), float((row < 2 ? -1.0 : 1.0) * volume.indexToWorld[3][row]));
+}
+
 /// By https://nifti.nimh.nih.gov/nifti-1: one file, whose affine map is from voxels to RAS millimetres.
 std::array<std::byte, 352> niftiHeader(const Volume& volume) {
   std::array<std::byte, 352> header{};
@@ -91,6 +115,7 @@ std::array<std::byte, 352> niftiHeader(const Volume& volume) {
     for (int column = 0; column < 4; ++column)
       place(header, 280 + 16 * std::size_t(row) + 4 * std::size_t(column),
             float((row < 2 ? -1.0 : 1.0) * volume.indexToWorld[column][row]));
+  placeQuaternion(header, volume);
   std::memcpy(header.data() + 344, "n+1", 4);
   return header;
 }

@@ -73,7 +73,9 @@ TEST_F(ScanCommand, ChannelsOfOmeZarrAreDrawnInTheirColours) {
   EXPECT_NEAR(left.g, 0.0f, 1e-3f);
   EXPECT_GT(right.g, 0.1f);
   EXPECT_NEAR(right.r, 0.0f, 1e-3f);
-  EXPECT_EQ(drawn("--channel right").pixels[32 * kEdge + 20].a, 0.0f);
+  const glm::vec4 middle = drawn("--channel right").pixels[32 * kEdge + 32];  // of what is seen
+  EXPECT_GT(middle.g, 0.1f);
+  EXPECT_NEAR(middle.r, 0.0f, 1e-3f);
   expectCleanRefusal("render @cells.ome.zarr.zip @b.png --size 16 --transfer-function {\"opacity\":[[0,0],[1,1]],\"color\":[[0,1,1,1]]}",
                      ExitCode::Usage, "--grid");
   expectCleanRefusal("render @cells.ome.zarr.zip @b.png --size 16 --grid middle", ExitCode::Input, "0 'left', 1 'right'");
@@ -91,7 +93,7 @@ TEST_F(ScanCommand, LayersOfChannelsHaveTheColoursOfTheFile) {
   expectSuccess(run("render @cells.zip @b.exr --quiet --unlit --size 32"));
   const Image layers = readExr(folder / "a.exr"), whole = readExr(folder / "b.exr");
   for (std::size_t i = 0; i < whole.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) ASSERT_NEAR(layers.pixels[i][c], whole.pixels[i][c], 2e-3f) << i;
+    for (int c = 0; c < 3; ++c) ASSERT_NEAR(layers.pixels[i][c], whole.pixels[i][c], 0.01f) << i;  // some rays are interpolated
 }
 
 TEST_F(ScanCommand, ConvertedVolumesAreTheSameImages) {

@@ -70,6 +70,20 @@ TEST(TiffScan, OmeSaysTheOrderOfPagesColoursAndDistances) {
   EXPECT_EQ(stemOf(folder / "a.ome.tif"), "a");
 }
 
+TEST(TiffScan, WithoutAWindowTheNoiseOfTheBackgroundIsNotDrawn) {
+  const TemporaryFolder folder;
+  // Noise of -6 to 6 around 25, most often 25, and 225 in a tenth of the voxels.
+  std::string values;
+  for (int i = 0; i < 20 * 20 * 20; ++i) {
+    const auto value = std::uint8_t(i % 10 == 0 ? 225 : 25 + (i % 13 - 6) * (i / 13 % 2));
+    values += char(value);
+  }
+  writeBytes(folder / "a_20x20x20_uint8.raw", values);
+  const Volume volume = readTiff(folder / "a_20x20x20_uint8.raw", {.channels = {{.name = "0"}}});
+  EXPECT_EQ(volume.activeVoxels, 20u * 20u * 20u / 10u);
+  EXPECT_NEAR(volume.minimum, 1.0f, 1e-3f);
+}
+
 TEST(TiffScan, OmeMayListThePageOfEachPlane) {
   const TemporaryFolder folder;
   const auto dataOf = [](int z, int page) {
