@@ -79,6 +79,14 @@ LightingDescription resolvedLighting(const LightingDescription& given, const std
   return description;
 }
 
+/// Without what a projection hardly shows, so that its image shows the rest large.
+Classification withoutFaintValues(Classification classification) {
+  constexpr float kFaint = 0.01f;
+  for (TransferFunction::OpacityPoint& point : classification.transferFunction->opacity)
+    if (point.opacity < kFaint) point.opacity = 0.0f;
+  return classification;
+}
+
 MethodDescription resolvedMethod(const MethodDescription& given) {
   FrameSettings frame;
   given.apply(frame);
@@ -190,7 +198,7 @@ BakedNeed SceneDescription::needOf(const fvx::FvxFile& file, int frameCount) con
 std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classification& classified, int frameCount,
                                               std::span<const SceneVolume> others) const {
   const auto content = [&] {
-    Subject all = contentOf(volume, classified);
+    Subject all = contentOf(volume, method.isProjected() ? withoutFaintValues(classified) : classified);
     if (others.empty()) return all;
     for (const SceneVolume& other : others) {
       const Subject own = contentOf(*known(other.source), other.classification);
