@@ -19,7 +19,7 @@ expect() { # EXPECTED WORD..., of which the last is incomplete
   fi
 }
 
-expect "render turntable merge oracle compare info convert generate bake devices" ""
+expect "render turntable merge oracle compare info convert generate bake presets convert-tf devices" ""
 expect "turntable" tu
 expect "--density-scale" render cloud.vdb --dens
 expect "--culling --cull-threshold" render cloud.vdb --cull
