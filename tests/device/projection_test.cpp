@@ -48,7 +48,7 @@ constexpr auto kBoth = {IntensityProjection::Maximum, IntensityProjection::Avera
 /// The largest values of a shell as thin as a voxel are the hardest to meet.
 TEST_F(ProjectionTest, MatchesTheReferenceFromOutsideAndInside) {
   for (const IntensityProjection projection : kBoth)
-    for (const auto& [name, least] : {std::pair("cloud", 50.0), {"shells", 45.0}, {"head", 33.0}}) {
+    for (const auto& [name, least] : {std::pair("cloud", 50.0), {"shells", 43.0}, {"head", 35.0}}) {
       const Scene scene = sceneOf(name, 45, projection);
       Renderer renderer(device(), scene.volume, scene.classification, {});
       FrameSettings settings = projecting({61, 47}, projection);
@@ -139,7 +139,7 @@ TEST_F(ProjectionTest, AnIsosurfaceOfADistanceIsABall) {
       if (away > radius + 0.8) {
         ASSERT_LT(pixel.a, 1e-3f) << x << ' ' << y;
       }
-      if (away > radius - 0.5) continue;
+      if (away > radius - 1.0) continue;  // where the image rings beside its edge
       ASSERT_NEAR(pixel.a, 1.0, 2e-3) << x << ' ' << y;
       ASSERT_NEAR(pixel.b, 0.7, 2e-3) << x << ' ' << y;
       if (away < 0.7 * radius) {
