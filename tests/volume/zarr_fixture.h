@@ -203,7 +203,7 @@ inline std::string zipOf(const ZarrFiles& files, bool isDeflated, const std::str
   std::string bytes, directory;
   for (const auto& [name, plain] : files) {
     const std::string packed = isDeflated ? deflateOf(plain, -15) : plain, full = top + name;
-    const std::uint32_t crc = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(plain.data()), uInt(plain.size())));
+    const auto size = std::uint32_t(plain.size()), crc = std::uint32_t(crc32(0, reinterpret_cast<const Bytef*>(plain.data()), uInt(size)));
     const auto addFacts = [&](std::string& to) {
       appendTo(to, std::uint16_t(20));
       appendTo(to, std::uint16_t(0));
@@ -211,7 +211,7 @@ inline std::string zipOf(const ZarrFiles& files, bool isDeflated, const std::str
       appendTo(to, std::uint32_t(0));
       appendTo(to, crc);
       appendTo(to, std::uint32_t(packed.size()));
-      appendTo(to, std::uint32_t(plain.size()));
+      appendTo(to, size);
       appendTo(to, std::uint16_t(full.size()));
       appendTo(to, std::uint16_t(0));
     };
