@@ -8,7 +8,7 @@ const float kLeastCoverage = 0.5;  // where a scalar may be the largest: within 
 
 const float kStepsOfVoxel = 4.0;   // at least, along a ray
 
-// What of a ray is projected, of which one kind is used.
+// What a ray projects. `largest` is used for kMaximumIntensity, `sum` and `coverage` for kAverageIntensity.
 struct Projected {
   float largest;   // scalar plus 1, or 0 if there is none
   float sum;       // of scalars times their coverage

@@ -238,7 +238,7 @@ struct AddedVolume {
 
 /// The method of drawing, in which the paper and FreeVoxels differ. What is not given is the default of FreeVoxels, or the paper's.
 struct MethodDescription {
-  std::optional<IntensityProjection> mode;  ///< else None: rays see a medium. Others show values: no light, whatever lights there are
+  std::optional<IntensityProjection> mode;  ///< else None: a ray sees a medium. The projections are without light
   bool paper = false;  ///< the paper's side of composite, attenuation, directions, code, path length, gradient, lod and culling
   std::optional<Draw> draw;  ///< else by drawing()
   std::optional<Composite> composite;

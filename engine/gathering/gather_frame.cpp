@@ -12,6 +12,9 @@ namespace freevoxels {
 
 namespace {
 
+static_assert(int(IntensityProjection::Maximum) == shader::kMaximumIntensity);
+static_assert(int(IntensityProjection::Average) == shader::kAverageIntensity);
+
 /// Lattice samples per voxel along an axis of the image, at the reference distance.
 constexpr double kSamplesPerVoxel = 2.4;
 /// Largest distance between coarse samples of adaptive sampling, in voxels at the reference distance: less than 2, the width of a voxel's

@@ -33,7 +33,7 @@ struct Ending {
   std::string_view ending;
   Format format;
 };
-/// Of endings that end alike, the longest comes first.
+/// Endings of file names. The first that fits counts, so that longer ones come before those that they end with.
 constexpr std::array<Ending, 22> kEndings{
     {{".ome.zarr.zip", Format::Zarr}, {".zarr.zip", Format::Zarr}, {".ome.zarr", Format::Zarr}, {".zarr", Format::Zarr},
      {".ozx", Format::Zarr},          {".zip", Format::Zarr},      {".ome.tif", Format::Tiff},  {".ome.tiff", Format::Tiff},
@@ -70,7 +70,7 @@ bool hasDicomSignature(const fs::path& file) {
   return stream && std::string_view(bytes + kPreamble, 4) == "DICM";
 }
 
-/// Of a folder: a Zarr hierarchy, slices of TIFF where none of its files is of DICOM, or a series of DICOM.
+/// What a folder is: a Zarr hierarchy, slices of TIFF where none of its files is of DICOM, or else a series of DICOM.
 Format formatOfFolder(const fs::path& folder) {
   std::error_code error;
   for (const char* metadata : {"zarr.json", ".zattrs", ".zgroup"})

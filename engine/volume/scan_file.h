@@ -24,8 +24,8 @@ namespace freevoxels {
 
 /// What is read of a file, and how.
 struct ScanRequest {
-  /// Of a file with several arrays, else that which the file calls its scalars, or the only one; of one with channels the name or number
-  /// of the one that is read alone.
+  /// The name of the array to read of a file with several; else that which the file calls its scalars, or the only one. In a file with
+  /// channels, the name or number of the one that is read alone.
   std::string array;
   std::vector<ChannelStyle> channels;  ///< of a file with channels, those that are drawn together; none: those that the file shows
   std::optional<int> pyramidLevel;     ///< of a file with several resolutions, from 0, the finest; else by imageEdge and memory

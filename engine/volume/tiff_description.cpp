@@ -50,7 +50,7 @@ std::string_view attribute(const pugi::xml_node& node, const char* name) {
   return node.attribute(name).as_string();
 }
 
-/// Of OME's numbers of colours: red, green, blue and alpha, 8 bits each.
+/// The linear colour of a number in OME-XML, which has 8 bits each of red, green, blue and alpha, from the highest.
 std::optional<glm::vec3> omeColor(std::string_view text) {
   const std::optional<std::int64_t> number = numberIn<std::int64_t>(text);
   if (!number) return std::nullopt;

@@ -82,7 +82,7 @@ std::optional<SampleType> tiffType(int bits, int format) {
   return sampleTypeOf(fmt::format("{}{}", format == SAMPLEFORMAT_INT ? "int" : "uint", bits));
 }
 
-/// Of the current page. Fails for one that is of no scan.
+/// The form of the current page. Fails for a page that is not of a scan.
 TiffPageForm formOf(const TiffFile& file) {
   const auto width = file.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0), height = file.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
   checkEdges(file.path(), {std::int64_t(width), std::int64_t(height), 1});

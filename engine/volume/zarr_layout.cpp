@@ -17,7 +17,7 @@ using Extents = std::vector<std::uint64_t>;
 
 constexpr std::uint64_t kLargestMetadata = std::uint64_t(64) << 20, kLargestChunk = std::uint64_t(1) << 30;
 
-/// Of the description of one array, which sentences name.
+/// Parses the description of one array, whose name is in the sentences of its errors.
 class LayoutParser {
  public:
   LayoutParser(const FileStore& store, const std::string& folder) : store_(store), folder_(folder) {}
