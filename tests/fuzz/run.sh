@@ -11,7 +11,9 @@ kinds=("$@")
 here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 build="$here/../../build-fuzz"
 
-cmake -S "$here" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ >/dev/null
+# Optimising takes as long as a short run gains by it.
+[ "$seconds" -lt 600 ] && optimisation=-O0 || optimisation=-O1
+cmake -S "$here" -B "$build" -G Ninja -DCMAKE_CXX_COMPILER=clang++ -DREADERS_OPTIMISATION="$optimisation" >/dev/null
 cmake --build "$build"
 mkdir -p "$build/failures"
 "$build/seeds" "$build/seeds-made"
