@@ -69,6 +69,7 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
   if (isWhole) {
     drawsWhole_ = false;
     wholeIsQuick_ = time < kQuickMilliseconds;
+    wholeTime_ = time;
   }
   const std::uint64_t shown = state.latest ? state.latest->request.number : 0;
   const bool wholeIsThere = state.whole && request.number <= state.whole->request.number;
@@ -115,6 +116,7 @@ void ImageDirector::askOfChange(const ViewState& state) {
   if (state.changed || drawsWhole_) whole_.abandon();
   drawsWhole_ = false;
   const bool moves = !state.changed && wholeRevision_ == revision_ && state.diagnosis.shown == Shown::Image;
+  if (moves && state.latest && state.latest->request.purpose != Purpose::Move) movePace_.beginFrom(wholeTime_);
   const AdaptiveResolution& pace = moves ? movePace_ : editPace_;
   askedVoxels_ = pace.voxelsAlongEdge();
   RenderThread& thread = askedVoxels_ == kAllVoxels ? whole_ : quick_;

@@ -49,12 +49,13 @@ class ImageDirector {
   std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
   std::uint64_t revision_ = 1, wholeRevision_ = 0;  ///< of everything but the camera; that of the last image of all voxels
   Clock::time_point lastChange_;
-  AdaptiveResolution movePace_{true}, editPace_;
+  AdaptiveResolution movePace_{AdaptiveResolution::Voxels::All}, editPace_{AdaptiveResolution::Voxels::Fewer};
   ImageRate rate_;
   Purpose lastPurpose_ = Purpose::Whole;
   int askedVoxels_ = kAllVoxels;  ///< of the last quick image
   bool refines_ = false;          ///< whether a step of refinement is being drawn
   bool wholeIsQuick_ = false, drawsWhole_ = false;  ///< drawsWhole_: a whole image in full size was asked for, and has not come
+  double wholeTime_ = 0.0;                          ///< of the last whole image, ms
 };
 
 }  // namespace freevoxels

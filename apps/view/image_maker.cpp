@@ -171,6 +171,10 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   FrameSettings settings = frameSettings(request.scene, request.scene.output.aovs.needDepth());
   settings.lighting = drawn.scene.lighting;
   settings.holdout = holdoutOf(request);
+  if (request.purpose != Purpose::Whole && settings.gathers()) {  // a draft
+    settings.gather().mostSamplesAcrossPixel = 1.0;
+    settings.gather().sampleTolerance = 0.0f;
+  }
   drawn.image = renderer.renderOnDevice(drawn.scene.camera, settings, progress);
   drawn.shown = {drawn.image, &drawn.image->colorEnergy};
   drawn.times = renderer.timings();

@@ -12,9 +12,9 @@ constexpr std::chrono::milliseconds kPause{500}, kSpan{2000};
 
 /// Beside the window's own frames, 15 images a second on two cores.
 constexpr double kMilliseconds = 36.0;
-constexpr std::array kVoxels{kAllVoxels, 64, 48, 32, 24, 16};
-constexpr double kMinScale = 0.2, kFirstScale = 0.5;
-/// Splats cost more than pixels: beyond these there are fewer or more of them.
+constexpr std::array kVoxels{kAllVoxels, 128, 96, 64, 48, 32, 24, 16};
+constexpr double kMinScale = 0.1, kFirstScale = 0.5;
+/// Where voxels cost more than pixels: beyond these there are fewer or more of them.
 constexpr double kCoarsensBelow = 0.35, kRefinesAbove = 0.95;
 /// Each number of voxels has a table of its own: none is chosen for a single slow image, nor the one that
 /// was too slow again soon.
@@ -38,12 +38,17 @@ int AdaptiveResolution::voxelsAlongEdge() const {
   return kVoxels[step_];
 }
 
+void AdaptiveResolution::beginFrom(double wholeMilliseconds) {
+  scale_ = std::clamp(std::sqrt(kMilliseconds / std::max(wholeMilliseconds, 1.0)), kMinScale, 1.0);
+}
+
 void AdaptiveResolution::took(double milliseconds) {
   // Slowly, as the window's own frames make one image take longer than the next.
   const double faster = std::pow(kMilliseconds / std::max(milliseconds, 1.0), 0.25);
   scale_ = std::clamp(scale_ * std::clamp(faster, 0.75, 1.15), kMinScale, 1.0);
+  if (all_) return;
   const bool coarsens = scale_ < kCoarsensBelow && step_ + 1 < kVoxels.size();
-  const bool refines = scale_ > kRefinesAbove && step_ > (all_ ? 0u : 1u) && --rest_ <= 0;
+  const bool refines = scale_ > kRefinesAbove && step_ > 1 && --rest_ <= 0;
   images_ = coarsens || refines ? images_ + 1 : 0;
   if (images_ < kMinImages) return;
   step_ += coarsens ? 1 : std::size_t(-1);

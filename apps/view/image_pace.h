@@ -26,17 +26,23 @@ class ImageRate {
 
 class AdaptiveResolution {
  public:
-  /// With `all`, images have all voxels at first, as only the camera moves; otherwise they never have.
-  explicit AdaptiveResolution(bool all = false) : all_(all), step_(all ? 0 : 2) {}
+  enum class Voxels { All, Fewer };
+  /// Images have all voxels, as while only the camera moves, so that they show the volume itself; or fewer, as while all that is made of
+  /// the voxels changes.
+  explicit AdaptiveResolution(Voxels voxels) : all_(voxels == Voxels::All), step_(all_ ? 0 : kFirstStep) {}
 
   /// Largest number of voxels along the longest edge of the volume.
   int voxelsAlongEdge() const;
-  /// Scale of the image's edges, in 0.2..1.
+  /// Scale of the image's edges, in 0.1..1.
   double scale() const { return scale_; }
+  /// Chooses the scale of the first image from the time that a whole image took, of all voxels in full size.
+  void beginFrom(double wholeMilliseconds);
   /// Reports the time of the last image.
   void took(double milliseconds);
 
  private:
+  static constexpr std::size_t kFirstStep = 3;
+
   bool all_;
   std::size_t step_;  ///< index into the numbers of voxels
   double scale_ = 0.5;

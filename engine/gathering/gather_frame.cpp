@@ -280,7 +280,8 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const glm::dvec2 size(settings.size);
   const int raysOfPixel = settings.holdout ? raysOfHeldOutPixel(settings.size) : 0;
   // At least a few samples, however near the volume is.
-  const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), leastPitch(settings.size), std::max(size.x, size.y));
+  const double least = std::max(leastPitch(settings.size), 1.0 / settings.gather().mostSamplesAcrossPixel);
+  const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
   const double pitch = raysOfPixel > 0 ? 1.0 / raysOfPixel : std::round(wanted * kPitchUnits) / kPitchUnits;
   // Coarse samples, two pitches apart, would miss single voxels that are much smaller, and edges of a holdout if not each pixel has one.
   const bool adapts = 2.0 * pitch * distance <= kCoarseVoxels * voxel && raysOfPixel != 1;

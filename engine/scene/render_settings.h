@@ -40,6 +40,9 @@ struct GatherSettings {
   /// The roughness up to which rays are interpolated from rays twice as far apart (gather_roughness.comp); 0 marches every ray, as do
   /// parts, cubes and images of voxels smaller than 0.8 pixels.
   float sampleTolerance = 1.0f / 16.0f;
+  /// The most samples along the edge of a pixel, more than 0. There are 2.4 along the edge of a voxel where that is less. A draft has one
+  /// or less: the time of a frame of small voxels follows their number. Not for holdouts, and the same for all parts of an image.
+  double mostSamplesAcrossPixel = 2.0;
   /// Only of single volumes that are classified after interpolation (Classification::isPost), without lighting, at `lod` 0.
   IntensityProjection projection = IntensityProjection::None;
 };

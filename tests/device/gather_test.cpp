@@ -4,6 +4,7 @@
 #include <cmath>
 
 #include "engine/gathering/gather_stages.h"
+#include "engine/image/metrics.h"
 #include "engine/reference/reference_gather.h"
 #include "engine/renderer_stages.h"
 #include "engine/validation/quality_scenes.h"
@@ -59,6 +60,24 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
       const GatherSums& sums = stages.gathered[std::size_t(sample.x + stages.lattice.samples.x * sample.y)];
       for (int c = 0; c < 4; ++c) EXPECT_NEAR(c < 3 ? sums.color[c] : sums.energy, sum[c], 2e-3) << x << ' ' << y << ' ' << c;
     }
+}
+
+/// As the viewer draws while the camera moves: a sample a pixel or fewer, with all voxels and the light of the whole image.
+TEST_F(GatherTest, DraftsHaveAsManySamplesAsTheyAreAllowedAndShowTheSame) {
+  const QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 64, makeProcedural("head", 64));
+  Renderer renderer(device(), head.volume, head.classification, {});
+  const Camera camera = framingCamera(head.volume, 35.0, 25.0, 1.0, {});
+  FrameSettings settings = gathering({96, 96});
+  settings.lighting = Lighting{.lights = {{.place = {1.0, 0.5, 0.5}}}, .ambient = glm::dvec3(0.2), .surface = 1.0};
+  const Image whole = renderer.render(camera, settings);
+  for (const double across : {1.0, 0.5}) {
+    FrameSettings draft = settings;
+    draft.gather().sampleTolerance = 0.0f;
+    draft.gather().mostSamplesAcrossPixel = across;
+    const GatherStages stages = RendererStages(renderer).renderGatherStages(camera, draft);
+    EXPECT_EQ(stages.lattice.pitch, 1.0 / across);
+    EXPECT_GT(psnr(stages.image, whole), across == 1.0 ? 33.0 : 26.0) << across;
+  }
 }
 
 TEST_F(GatherTest, IsAsNearToTheOracleAsSplats) {

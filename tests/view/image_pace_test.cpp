@@ -38,7 +38,7 @@ double timeOf(const AdaptiveResolution& pace, double splats, double pixels) {
 TEST(AdaptiveResolution, ComesToImagesThatAreQuickEnoughAndStays) {
   for (const double splats : {1.0, 30.0, 100.0, 150.0, 1000.0})
     for (const double pixels : {1.0, 20.0, 100.0, 400.0}) {
-      AdaptiveResolution pace;
+      AdaptiveResolution pace(AdaptiveResolution::Voxels::Fewer);
       int changes = 0;
       for (int i = 0; i < 120; ++i) {
         const int before = pace.voxelsAlongEdge();
@@ -52,20 +52,40 @@ TEST(AdaptiveResolution, ComesToImagesThatAreQuickEnoughAndStays) {
 }
 
 TEST(AdaptiveResolution, IsAsFineAsTimeAllows) {
-  AdaptiveResolution pace;
+  AdaptiveResolution pace(AdaptiveResolution::Voxels::Fewer);
   for (int i = 0; i < 20; ++i) pace.took(500.0);
   EXPECT_LT(pace.voxelsAlongEdge(), 48);
   for (int i = 0; i < 1000; ++i) pace.took(timeOf(pace, 5.0, 20.0));
-  EXPECT_EQ(pace.voxelsAlongEdge(), 64);
+  EXPECT_EQ(pace.voxelsAlongEdge(), 128);
   EXPECT_EQ(pace.scale(), 1.0);
 }
 
 TEST(AdaptiveResolution, DoesNotChangeTheVoxelsForOneSlowImage) {
-  AdaptiveResolution pace;
+  AdaptiveResolution pace(AdaptiveResolution::Voxels::Fewer);
   for (int i = 0; i < 10; ++i) pace.took(32.0);
   const int before = pace.voxelsAlongEdge();
   pace.took(5000.0);
   EXPECT_EQ(pace.voxelsAlongEdge(), before);
+}
+
+TEST(AdaptiveResolution, OfAllVoxelsKeepsThemHoweverSlowImagesAre) {
+  AdaptiveResolution pace(AdaptiveResolution::Voxels::All);
+  for (int i = 0; i < 100; ++i) {
+    EXPECT_EQ(pace.voxelsAlongEdge(), kAllVoxels);
+    pace.took(2000.0);
+  }
+  EXPECT_EQ(pace.scale(), 0.1);
+  for (int i = 0; i < 100; ++i) pace.took(5.0);
+  EXPECT_EQ(pace.scale(), 1.0);
+}
+
+/// An image of a quarter of the pixels takes a quarter of the time.
+TEST(AdaptiveResolution, BeginsWithTheScaleForWhichTheWholeImageSaysThatThereIsTime) {
+  AdaptiveResolution pace(AdaptiveResolution::Voxels::All);
+  pace.beginFrom(400.0);
+  EXPECT_NEAR(pace.scale() * pace.scale() * 400.0, 36.0, 1.0);
+  pace.beginFrom(10.0);
+  EXPECT_EQ(pace.scale(), 1.0);
 }
 
 }  // namespace
