@@ -75,9 +75,7 @@ bool isPressed(const Entry& entry) {
   const ImGuiIO& io = ImGui::GetIO();
   const With with = !io.KeyCtrl ? With::Nothing : io.KeyShift ? With::ControlShift : With::Control;
   if (entry.key == 0 || entry.with != with || !isKeyPressed(entry.key)) return false;
-  if (!io.WantTextInput || entry.key == GLFW_KEY_F1) return true;
-  const bool ofTexts = entry.action == Action::Undo || entry.action == Action::Redo || entry.action == Action::CopyImage;
-  return with != With::Nothing && !ofTexts;
+  return !io.WantTextInput || entry.key == GLFW_KEY_F1;  // texts have shortcuts of their own
 }
 
 void line(const char* keys, const char* meaning) {

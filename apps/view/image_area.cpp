@@ -108,7 +108,7 @@ void ImageArea::press(ViewState& state, const ShownTextures& textures, const Ima
     clip_ = {clip->side, clip->step, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}, input.clipBox, input.clipPlane};
   } else if (axis) {
     held_ = Held::Axes;
-    state.look(alongAxis(*state.camera, *axis));
+    state.setCamera(alongAxis(*state.camera, state.pole, *axis));
   } else if (textures.compared != nullptr && std::abs(ImGui::GetIO().MousePos.x - split) < kSplitReach) {
     held_ = Held::Split;
   }
@@ -138,13 +138,13 @@ void ImageArea::drag(ViewState& state, const ImageFrame& frame) {
   const bool left = ImGui::IsMouseDown(ImGuiMouseButton_Left);
   if (way == glm::dvec2(0.0)) return;
   if (ImGui::IsMouseDown(ImGuiMouseButton_Middle) || (left && io.KeyShift)) {
-    state.look(panned(*state.camera, way));
+    state.setCamera(panned(*state.camera, way));
   } else if (ImGui::IsMouseDown(ImGuiMouseButton_Right)) {
-    if (io.KeyShift || !changeWindow(state, way)) state.look(turned(*state.camera, way));
+    if (io.KeyShift || !changeWindow(state, way)) state.setCamera(turned(*state.camera, state.pole, way));
   } else if (left && io.KeyCtrl) {
-    state.look(dollied(*state.camera, std::exp(-4.0 * way.y)));
+    state.setCamera(dollied(*state.camera, std::exp(-4.0 * way.y)));
   } else if (left) {
-    state.look(orbited(*state.camera, way));
+    state.setCamera(orbited(*state.camera, state.pole, way));
     turned_ = true;
   }
 }
@@ -163,7 +163,7 @@ void ImageArea::fly(ViewState& state) {
   const double pace = ImGui::GetIO().KeyShift ? 4.0 : 1.0;
   way *=
       pace * kFlightPerSecond * longestEdge(*state.latest->scene.volume) * double(ImGui::GetIO().DeltaTime);
-  state.look(flown(*state.camera, way));
+  state.setCamera(flown(*state.camera, way));
 }
 
 void ImageArea::draw(ViewState& state, const ShownTextures& textures) {
@@ -192,7 +192,7 @@ void ImageArea::draw(ViewState& state, const ShownTextures& textures) {
   else if (ImGui::IsItemActive() && held_ == Held::Split)
     state.split = std::clamp((io.MousePos.x - low.x) / room.x, 0.0f, 1.0f);
   moves_ = ImGui::IsItemActive() && held_ == Held::Camera;
-  if (hovered && io.MouseWheel != 0.0f) state.look(dollied(*state.camera, std::pow(kDollyPerNotch, double(io.MouseWheel))));
+  if (hovered && io.MouseWheel != 0.0f) state.setCamera(dollied(*state.camera, std::pow(kDollyPerNotch, double(io.MouseWheel))));
   fly(state);
 }
 

@@ -10,6 +10,15 @@
 
 namespace freevoxels {
 
+int keyOfLayout(int key) {
+  const bool isPrinted = key >= GLFW_KEY_APOSTROPHE && key <= GLFW_KEY_WORLD_2 && (key < GLFW_KEY_0 || key > GLFW_KEY_9);
+  const char* const name = isPrinted ? glfwGetKeyName(key, 0) : nullptr;
+  if (name == nullptr || name[0] == '\0' || name[1] != '\0') return key;
+  if (name[0] >= 'a' && name[0] <= 'z') return GLFW_KEY_A + (name[0] - 'a');
+  if (name[0] == ',') return GLFW_KEY_COMMA;
+  return name[0] == '.' ? GLFW_KEY_PERIOD : key;
+}
+
 #if IMGUI_VERSION_NUM < 18700
 
 bool isKeyPressed(int key, bool repeats) {

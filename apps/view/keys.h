@@ -9,7 +9,12 @@ namespace freevoxels {
 bool isKeyPressed(int key, bool repeats = false);
 bool isKeyDown(int key);
 
-/// Tells Dear ImGui that a key of the window went down or up. A key that neither it nor the viewer has a use for may be ignored.
+/// The key, by its place on a US keyboard as GLFW counts, that has on this place the letter, the comma or the full stop that the user's
+/// keyboard has there; other keys, and those of other alphabets, stay as they are.
+int keyOfLayout(int key);
+
+/// Tells Dear ImGui that a key of the window, as keyOfLayout() has it, went down or up. A key that neither it nor the viewer has a use for
+/// may be ignored.
 void giveKey(GLFWwindow* window, int key, bool down);
 
 /// To be called at the beginning of each frame. Outside of text fields Tab is the viewer's: Dear ImGui would go from field to field.

@@ -26,12 +26,16 @@ glm::dvec3 rotated(glm::dvec3 vector, glm::dvec3 axis, double angle) {
          axis * glm::dot(axis, vector) * (1.0 - std::cos(angle));
 }
 
-/// By angles about `up` and about the right; not beyond the poles.
-glm::dvec3 swung(glm::dvec3 vector, const Camera& camera, double around, double upwards) {
-  const glm::dvec3 pole = glm::normalize(camera.up);
+/// `vector`, which the camera looks along or against, turned by angles about the pole and about the camera's right; not beyond the poles.
+glm::dvec3 swung(glm::dvec3 vector, const Camera& camera, glm::dvec3 pole, double around, double upwards) {
+  pole = glm::normalize(pole);
   const double toPole = std::acos(std::clamp(glm::dot(glm::normalize(vector), pole), -1.0, 1.0));
   const double within = toPole - std::clamp(toPole - upwards, kPoleMargin, glm::pi<double>() - kPoleMargin);
-  const glm::dvec3 side = glm::normalize(glm::cross(vector, pole));
+  const glm::dvec3 across = glm::cross(vector, pole);
+  const Axes axes = axesOf(camera);
+  const double facing = glm::dot(vector, axes.ahead) > 0.0 ? 1.0 : -1.0;
+  // Along the pole, the right of the image says which way is round.
+  const glm::dvec3 side = glm::length(across) > 1e-3 * glm::length(vector) ? glm::normalize(across) : facing * axes.right;
   return rotated(rotated(vector, side, within), pole, around);
 }
 
@@ -43,11 +47,11 @@ double heightAtLookAt(const Camera& camera) {
 
 }  // namespace
 
-Camera orbited(const Camera& camera, glm::dvec2 drag) {
+Camera orbited(const Camera& camera, const glm::dvec3& pole, glm::dvec2 drag) {
   Camera moved = camera;
   const glm::dvec3 arm = camera.position - camera.lookAt;
-  moved.position =
-      camera.lookAt + swung(arm, camera, -glm::pi<double>() * drag.x, -glm::pi<double>() * drag.y);
+  moved.position = camera.lookAt + swung(arm, camera, pole, -glm::pi<double>() * drag.x, -glm::pi<double>() * drag.y);
+  moved.up = pole;
   return moved;
 }
 
@@ -68,11 +72,11 @@ Camera dollied(const Camera& camera, double factor) {
   return moved;
 }
 
-Camera turned(const Camera& camera, glm::dvec2 drag) {
+Camera turned(const Camera& camera, const glm::dvec3& pole, glm::dvec2 drag) {
   Camera moved = camera;
   const double field = glm::radians(camera.orthographic ? Camera{}.verticalFov : camera.verticalFov);
-  moved.lookAt =
-      camera.position + swung(camera.lookAt - camera.position, camera, -field * drag.x, field * drag.y);
+  moved.lookAt = camera.position + swung(camera.lookAt - camera.position, camera, pole, -field * drag.x, field * drag.y);
+  moved.up = pole;
   return moved;
 }
 
@@ -85,13 +89,16 @@ Camera flown(const Camera& camera, glm::dvec3 way) {
   return moved;
 }
 
-Camera alongAxis(const Camera& camera, int axis) {
+Camera alongAxis(const Camera& camera, const glm::dvec3& pole, int axis) {
   FV_CHECK_LT(axis, 6);
   glm::dvec3 side(0.0);
   side[axis / 2] = axis % 2 == 0 ? 1.0 : -1.0;
   Camera moved = camera;
   moved.position = camera.lookAt + glm::distance(camera.position, camera.lookAt) * side;
-  moved.up = axis / 2 == 1 ? glm::dvec3(0.0, 0.0, axis == 2 ? -1.0 : 1.0) : glm::dvec3(0.0, 1.0, 0.0);
+  const double alongPole = glm::dot(side, glm::normalize(pole));
+  const glm::dvec3 front = std::abs(pole.z) > std::abs(pole.y) ? glm::dvec3(0.0, -1.0, 0.0) : glm::dvec3(0.0, 0.0, 1.0);
+  constexpr double kParallel = 0.999;
+  moved.up = std::abs(alongPole) < kParallel ? pole : alongPole > 0.0 ? -front : front;
   return moved;
 }
 

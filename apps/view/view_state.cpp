@@ -26,20 +26,21 @@ std::optional<MethodDescription> ViewState::comparedMethod() const {
   }
 }
 
-void ViewState::look(const Camera& from) {
+void ViewState::setCamera(const Camera& next) {
   try {
-    checkCamera(from);
+    checkCamera(next);
   } catch (const Error& error) {
     problem = withOptions(error);
     return;
   }
-  camera = from;
-  scene.camera.look(from);
+  camera = next;
+  scene.camera.look(next);
   moved = true;
 }
 
 void ViewState::begin(const Scene& first) {
   camera = first.camera;
+  pole = first.camera.up;
   if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction)
     scene.classification.takeFunction(*function);
   LightingDescription& lighting = scene.lighting;

@@ -33,6 +33,7 @@ struct ViewState : Edits {
   float split = 0.5f;  ///< fraction of the image's width left of the split
   Overlays overlays;
   std::vector<Camera> bookmarks;  ///< of the volume
+  glm::dvec3 pole{0.0, 1.0, 0.0};  ///< what is up for the user (navigation.h): as the options or the volume say
   /// Set by the code that changes one of the Edits; an image is then requested and they are cleared. `moved` is for the camera
   /// alone, `retoned` for what only affects how a finished image is shown or written.
   bool changed = true, moved = false, retoned = false;
@@ -55,7 +56,7 @@ struct ViewState : Edits {
   /// they stay as they are.
   void begin(const Scene& first);
   /// Uses this camera, unless it shows nothing: `problem` then gives the reason.
-  void look(const Camera& from);
+  void setCamera(const Camera& next);
   /// Opens another volume, as in the scene; in a sequence if it is one of its frames.
   void show(const SceneDescription& other, const std::optional<Sequence>& frames);
   /// Opens another frame of the sequence with the same camera. Automatic settings stay those of the frame

@@ -119,7 +119,7 @@ void Window::give(const InputEvent& event) {
       ImGui_ImplGlfw_ScrollCallback(window_, event.value.x, event.value.y);
       break;
     case InputEvent::Kind::Key:
-      giveKey(window_, event.code, event.down);
+      giveKey(window_, keyOfLayout(event.code), event.down);
       break;
     case InputEvent::Kind::Character:
       io.AddInputCharacter(static_cast<unsigned int>(event.code));

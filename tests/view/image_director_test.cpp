@@ -46,7 +46,7 @@ TEST_F(ImageDirectorTest, RefinesInStepsAndMovesWithAllVoxels) {
   EXPECT_EQ(first[1].scene.camera.size, glm::ivec2(64, 48)) << "in full size";
   EXPECT_EQ(first[2].purpose, Purpose::Whole);
 
-  state.look(orbited(*state.camera, {0.1, 0.0}));
+  state.setCamera(orbited(*state.camera, state.pole, {0.1, 0.0}));
   const std::vector<ImageRequest> moved = follow();
   ASSERT_FALSE(moved.empty());
   for (const ImageRequest& request : moved) EXPECT_EQ(request.voxelsAlongEdge, kAllVoxels);

@@ -8,11 +8,13 @@
 namespace freevoxels {
 namespace {
 
+constexpr glm::dvec3 kPole{0.1, 1.0, -0.2};
+
 Camera obliqueCamera(bool orthographic = false) {
   Camera camera;
   camera.position = {3.0, 2.0, 5.0};
   camera.lookAt = {1.0, -1.0, 0.5};
-  camera.up = {0.1, 1.0, -0.2};
+  camera.up = kPole;
   camera.orthographic = orthographic;
   camera.orthographicHeight = 2.5;
   camera.verticalFov = 40.0;
@@ -40,7 +42,7 @@ void expectNear(glm::dvec3 a, glm::dvec3 b) {
 TEST(Navigation, AnOrbitKeepsTheDistanceTheTargetAndUp) {
   const Camera before = obliqueCamera();
   for (const glm::dvec2 drag : {glm::dvec2(0.3, 0.1), glm::dvec2(-1.7, 0.0), glm::dvec2(0.0, -0.2)}) {
-    const Camera after = orbited(before, drag);
+    const Camera after = orbited(before, before.up, drag);
     EXPECT_NEAR(distanceOf(after), distanceOf(before), 1e-12);
     EXPECT_EQ(after.lookAt, before.lookAt);
     EXPECT_EQ(after.up, before.up);
@@ -52,32 +54,31 @@ TEST(Navigation, AnOrbitOfTheImagesHeightIsHalfATurn) {
   Camera before = obliqueCamera();
   before.up = {0.0, 1.0, 0.0};
   const glm::dvec3 arm = before.position - before.lookAt;
-  expectNear(orbited(before, {1.0, 0.0}).position, before.lookAt + glm::dvec3(-arm.x, arm.y, -arm.z));
-  EXPECT_NEAR(toPole(orbited(before, {0.0, 0.1})) - toPole(before), 0.1 * glm::pi<double>(), 1e-12);
+  expectNear(orbited(before, before.up, {1.0, 0.0}).position, before.lookAt + glm::dvec3(-arm.x, arm.y, -arm.z));
+  EXPECT_NEAR(toPole(orbited(before, before.up, {0.0, 0.1})) - toPole(before), 0.1 * glm::pi<double>(), 1e-12);
 }
 
 TEST(Navigation, WhatIsInFrontFollowsTheHandThatOrbits) {
   for (const bool orthographic : {false, true}) {
     const Camera before = obliqueCamera(orthographic);
     const glm::dvec3 front = before.lookAt + 0.3 * glm::normalize(before.position - before.lookAt);
-    EXPECT_GT(onImage(orbited(before, {0.02, 0.0}), front).x, onImage(before, front).x + 1e-3);
-    EXPECT_GT(onImage(orbited(before, {0.0, 0.02}), front).y, onImage(before, front).y + 1e-3);
+    EXPECT_GT(onImage(orbited(before, before.up, {0.02, 0.0}), front).x, onImage(before, front).x + 1e-3);
+    EXPECT_GT(onImage(orbited(before, before.up, {0.0, 0.02}), front).y, onImage(before, front).y + 1e-3);
   }
 }
 
 TEST(Navigation, AnOrbitStopsShortOfThePoles) {
   constexpr double kMargin = 0.01;
-  const Camera top = orbited(obliqueCamera(), {0.0, -5.0}), bottom = orbited(obliqueCamera(), {0.0, 5.0});
+  const Camera top = orbited(obliqueCamera(), kPole, {0.0, -5.0}), bottom = orbited(obliqueCamera(), kPole, {0.0, 5.0});
   EXPECT_NEAR(toPole(top), kMargin, 1e-9);
   EXPECT_NEAR(toPole(bottom), glm::pi<double>() - kMargin, 1e-9);
   for (const Camera& camera : {top, bottom}) {
     EXPECT_NO_THROW(checkCamera(camera));
-    const Camera again = orbited(camera, {0.2, camera.position == top.position ? -1.0 : 1.0});
+    const Camera again = orbited(camera, camera.up, {0.2, camera.position == top.position ? -1.0 : 1.0});
     EXPECT_NEAR(toPole(again), toPole(camera), 1e-9) << "it stays there";
     EXPECT_NO_THROW(checkCamera(again));
   }
-  EXPECT_NEAR(toPole(orbited(top, {0.0, 0.25})), kMargin + 0.25 * glm::pi<double>(), 1e-9)
-      << "and comes back";
+  EXPECT_NEAR(toPole(orbited(top, top.up, {0.0, 0.25})), kMargin + 0.25 * glm::pi<double>(), 1e-9) << "and comes back";
 }
 
 TEST(Navigation, WhatIsAtTheTargetFollowsTheHandThatPans) {
@@ -100,13 +101,13 @@ TEST(Navigation, ADollyMultipliesTheDistanceAndTheHeight) {
 }
 
 TEST(Navigation, TurningTheHeadKeepsTheEye) {
-  const Camera before = obliqueCamera(), after = turned(before, {0.1, 0.2});
+  const Camera before = obliqueCamera(), after = turned(before, before.up, {0.1, 0.2});
   EXPECT_EQ(after.position, before.position);
   EXPECT_NEAR(distanceOf(after), distanceOf(before), 1e-12);
   const glm::dvec2 target = onImage(after, before.lookAt);
   EXPECT_LT(target.x, -0.1) << "to the right: what was ahead is at the left";
   EXPECT_LT(target.y, -0.2);
-  const Camera upwards = turned(before, {0.0, 100.0});
+  const Camera upwards = turned(before, before.up, {0.0, 100.0});
   EXPECT_NO_THROW(checkCamera(upwards)) << "not beyond the pole";
 }
 
@@ -123,12 +124,32 @@ TEST(Navigation, AFlightGoesWhereTheEyeLooks) {
 TEST(Navigation, AxisViewsLookFromTheirSideAtTheSamePoint) {
   const Camera before = obliqueCamera();
   for (int axis = 0; axis < 6; ++axis) {
-    const Camera after = alongAxis(before, axis);
+    const Camera after = alongAxis(before, kPole, axis);
     glm::dvec3 side(0.0);
     side[axis / 2] = axis % 2 == 0 ? 1.0 : -1.0;
     expectNear(after.position, before.lookAt + distanceOf(before) * side);
     EXPECT_EQ(after.lookAt, before.lookAt);
     EXPECT_NO_THROW(checkCamera(after)) << axis;
+  }
+}
+
+/// Of scans, which have the head at +z and the face at -y.
+TEST(Navigation, AxisViewsShowWhatIsUpUpwardsAndDragsTurnAboutItAfterwards) {
+  constexpr glm::dvec3 kUp{0.0, 0.0, 1.0};
+  Camera camera = obliqueCamera();
+  camera.up = kUp;
+  for (const int side : {0, 1, 2, 3}) EXPECT_EQ(alongAxis(camera, kUp, side).up, kUp) << side;
+  for (const int side : {4, 5}) {
+    const Camera along = alongAxis(camera, kUp, side);
+    EXPECT_EQ(along.up, glm::dvec3(0.0, side == 4 ? 1.0 : -1.0, 0.0)) << "the face is below, or above";
+    const Camera after = orbited(along, kUp, {0.0, side == 4 ? 0.25 : -0.25});
+    EXPECT_EQ(after.up, kUp);
+    EXPECT_NO_THROW(checkCamera(after));
+    const glm::dvec3 arm = after.position - after.lookAt;
+    EXPECT_NEAR(std::abs(arm.x), 0.0, 1e-9) << "upwards or downwards alone";
+    EXPECT_LT(arm.y, -0.5 * glm::length(arm)) << "in front of the face";
+    const glm::dvec3 level = glm::cross(after.lookAt - after.position, after.up);
+    EXPECT_NEAR(glm::normalize(level).z, 0.0, 1e-12) << "the horizon stays level";
   }
 }
 
