@@ -8,11 +8,33 @@
 namespace freevoxels {
 
 enum class Action {
-  Open, RestoreScene, SaveImage, SaveScene, SaveTurntable, Quit,
-  Undo, Redo, CopyImage, CopyCommand,
-  FrameVolume, Projection, FromRight, FromLeft, FromAbove, FromBelow, FromFront, FromBack, AddBookmark,
-  Axes, Box, ScaleBar, ColorBar, Slices, Panel,
-  Keys, Cancel,
+  Open,
+  RestoreScene,
+  SaveImage,
+  SaveScene,
+  SaveTurntable,
+  Quit,
+  Undo,
+  Redo,
+  CopyImage,
+  CopyCommand,
+  FrameVolume,
+  Projection,
+  FromRight,
+  FromLeft,
+  FromAbove,
+  FromBelow,
+  FromFront,
+  FromBack,  // in the order of alongAxis()
+  AddBookmark,
+  Axes,
+  Box,
+  ScaleBar,
+  ColorBar,
+  Slices,
+  Panel,
+  Keys,
+  Cancel,
 };
 inline constexpr int kActions = int(Action::Cancel) + 1;
 

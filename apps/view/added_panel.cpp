@@ -68,7 +68,7 @@ void AddedPanel::follow(const ViewState& state) {
 void AddedPanel::drawEntry(ViewState& state, std::size_t index, bool& isRemoved) {
   Entry& entry = entries_[index];
   ImGui::PushID(int(index));
-  bool changed = ImGui::Checkbox("##shown", &entry.isShown);
+  bool changed = checkBox("##shown", &entry.isShown);
   hint("Whether the volume is drawn");
   ImGui::SameLine();
   const std::string name = std::filesystem::path(entry.volume.input.volume).filename().string();

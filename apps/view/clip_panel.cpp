@@ -97,10 +97,10 @@ bool drawPlane(ClipPlane& plane, const Volume& volume, const Camera& camera) {
 bool drawTicks(std::optional<VoxelBox>& box, std::optional<ClipPlane>& plane, const ViewState& state) {
   bool hasBox = box.has_value(), hasPlane = plane.has_value();
   beginRow("Clip");
-  const bool boxTicked = ImGui::Checkbox("box", &hasBox);
+  const bool boxTicked = checkBox("box", &hasBox);
   hint("Draws only the voxels in a box, whose sides can be dragged in the image", "--clip-box");
   ImGui::SameLine(0.0f, ImGui::GetFontSize());
-  const bool planeTicked = ImGui::Checkbox("plane", &hasPlane);
+  const bool planeTicked = checkBox("plane", &hasPlane);
   hint("Draws only what is behind a plane, which can be dragged in the image", "--clip-plane");
   if (boxTicked) box = hasBox ? std::optional(VoxelBox{glm::ivec3(0), state.latest->wholeDimensions - 1}) : std::nullopt;
   if (planeTicked) plane = hasPlane ? std::optional(firstPlane(*state.latest->scene.volume, *state.camera)) : std::nullopt;

@@ -289,7 +289,7 @@ void FileDialog::drawName() {
   if (ImGui::Button("Cancel", {6.0f * ImGui::GetFontSize(), 0.0f}) || isKeyPressed(GLFW_KEY_ESCAPE))
     ImGui::CloseCurrentPopup();
   ImGui::SameLine();
-  if (ImGui::Checkbox("All files", &all_)) go(folder_);
+  if (checkBox("All files", &all_)) go(folder_);
   if (entered || sure) confirm(name_);
 }
 

@@ -178,7 +178,7 @@ void drawTableControls(ViewState& state) {
 
 void drawBlockControls(ViewState& state) {
   bool kept = state.diagnosis.chosenFor.has_value();
-  if (ImGui::Checkbox("Keep the cut, look from elsewhere", &kept)) {
+  if (checkBox("Keep the cut, look from elsewhere", &kept)) {
     state.diagnosis.chosenFor = kept ? state.camera : std::nullopt;
     state.changed = true;
   }

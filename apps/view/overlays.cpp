@@ -209,7 +209,8 @@ void ClipHandles::addBox(const ViewState& state, const ImageFrame& frame) {
   // The drawn volume begins at the first voxel of the box that it was drawn with.
   const glm::dvec3 drawnFirst(state.latest->request.scene.input.clipBox->first);
   const auto place = [&](glm::dvec3 voxel) {
-    return frame.place(*state.camera, glm::dvec3(state.latest->scene.volume->indexToWorld * glm::dvec4(voxel - drawnFirst, 1.0)));
+    return frame.place(state.latest->scene.camera,
+                       glm::dvec3(state.latest->scene.volume->indexToWorld * glm::dvec4(voxel - drawnFirst, 1.0)));
   };
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
@@ -231,9 +232,10 @@ void ClipHandles::addPlane(const ViewState& state, const ImageFrame& frame) {
   for (const glm::dvec3 corner : corners) middle += corner / double(corners.size());
   if (corners.empty()) middle = plane.point;
   const double voxel = volume.voxelSize();
-  const auto from = frame.place(*state.camera, middle), to = frame.place(*state.camera, middle + voxel * glm::normalize(plane.normal));
-  const glm::dvec3 cameraUp = glm::transpose(glm::dmat3(worldToCamera(*state.camera)))[1];
-  const auto beside = frame.place(*state.camera, middle + voxel * cameraUp);
+  const auto from = frame.place(state.latest->scene.camera, middle),
+             to = frame.place(state.latest->scene.camera, middle + voxel * glm::normalize(plane.normal));
+  const glm::dvec3 cameraUp = glm::transpose(glm::dmat3(worldToCamera(state.latest->scene.camera)))[1];
+  const auto beside = frame.place(state.latest->scene.camera, middle + voxel * cameraUp);
   if (!from || !to || !beside) return;
   glm::vec2 step(to->x - from->x, to->y - from->y);
   // Seen along its normal, the plane follows the mouse up and down.
@@ -260,7 +262,8 @@ VoxelBox withSideMoved(const VoxelBox& box, int side, int voxels, glm::ivec3 dim
 }
 
 void drawOverlays(const ViewState& state, const ImageFrame& frame) {
-  const Camera& camera = *state.camera;
+  // What is over the image is seen by the camera of the image, which a newer one may have replaced.
+  const Camera& camera = state.latest ? state.latest->scene.camera : *state.camera;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(frame.low, frame.high, true);
   const bool isVolume = state.latest && state.diagnosis.shown == Shown::Image;

@@ -31,7 +31,7 @@ void drawCamera(ViewState& state) {
   vector("Look-at point", camera.lookAt, "Point in the middle of the image, about which a drag turns; world units", "--look-at");
   vector("Up", camera.up, "Direction that is upright in the image", "--up");
   int projection = camera.orthographic ? 1 : 0;
-  if (choose("Projection", {"perspective", "orthographic"}, projection)) return state.look(withOtherProjection(camera));
+  if (choose("Projection", {"perspective", "orthographic"}, projection)) return state.setCamera(withOtherProjection(camera));
   hint("O switches it", "--orthographic");
   if (camera.orthographic)
     moved |= slideLogarithmic("Height", camera.orthographicHeight, 0.01 * camera.orthographicHeight,
@@ -39,7 +39,7 @@ void drawCamera(ViewState& state) {
   else
     moved |= slide("Field of view", camera.verticalFov, 5.0, 120.0, "%.0f°");
   hint("Of the image's height", camera.orthographic ? "--orthographic" : "--fov");
-  if (moved) state.look(camera);
+  if (moved) state.setCamera(camera);
 }
 
 void drawBookmarks(ViewState& state, SessionStore& store) {
@@ -49,7 +49,7 @@ void drawBookmarks(ViewState& state, SessionStore& store) {
     ImGui::PushID(int(i));
     const float remove = ImGui::CalcTextSize("x").x + 2.0f * ImGui::GetStyle().FramePadding.x;
     if (ImGui::Button(fmt::format("View {}", i + 1).c_str(), {-remove - ImGui::GetStyle().ItemSpacing.x, 0.0f}))
-      state.look(state.bookmarks[i]);
+      state.setCamera(state.bookmarks[i]);
     ImGui::SameLine();
     if (ImGui::Button("x")) removed = i;
     hint("Removes this bookmark");

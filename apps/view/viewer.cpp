@@ -30,6 +30,7 @@ namespace {
 constexpr std::array kDeviceExtensions{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
 constexpr glm::ivec2 kWindowSize{1280, 800};
 constexpr float kPanelWidth = 340.0f;
+constexpr float kSlicesShare = 0.3f;  // of the image's width
 
 constexpr std::chrono::milliseconds kPaint{60};      // between frames while an image is made that is wanted soon
 constexpr std::chrono::milliseconds kFade{140};      // from a quick image to the whole one
@@ -82,9 +83,9 @@ void Viewer::open(const std::string& file) {
   }
 }
 
-/// A volume or a scene that makes an image on its own.
+/// A volume or a scene that makes an image on its own: it is remembered when there is one.
 void Viewer::opened(const std::string& file) {
-  if (isWorthRemembering(file)) store_.remember(file);
+  opened_ = file;
   thumbnailOf_ = proceduralName(file) ? file : std::filesystem::absolute(file).lexically_normal().string();
   state_.bookmarks = store_.bookmarks(state_.scene.input.volume);
 }
@@ -138,12 +139,12 @@ std::array<ActionState, kActions> Viewer::actionStates() const {
   return states;
 }
 
-void Viewer::look(Action action) {
+void Viewer::changeView(Action action) {
   if (!state_.camera) return;
-  if (action == Action::FrameVolume && state_.latest) state_.look(framedVolume(state_));
-  if (action == Action::Projection) state_.look(withOtherProjection(*state_.camera));
+  if (action == Action::FrameVolume && state_.latest) state_.setCamera(framedVolume(state_));
+  if (action == Action::Projection) state_.setCamera(withOtherProjection(*state_.camera));
   const int axis = int(action) - int(Action::FromRight);
-  if (axis >= 0 && axis < 6) state_.look(alongAxis(*state_.camera, axis));
+  if (axis >= 0 && action <= Action::FromBack) state_.setCamera(alongAxis(*state_.camera, state_.pole, axis));
 }
 
 void Viewer::perform(Action action) {
@@ -168,12 +169,13 @@ void Viewer::perform(Action action) {
     case Action::Panel: return flip(showsPanel_);
     case Action::Keys: return flip(showsKeys_);
     case Action::Cancel: return export_.cancel();
-    default: return look(action);
+    default:
+      return changeView(action);
   }
 }
 
-void Viewer::drawSidePanel(float top, float height) {
-  beginPart("panels", {0.0f, top}, {panelWidth_ - kSplitterWidth * window_.contentScale(), height}, ImGui::GetStyle().WindowPadding);
+void Viewer::drawSidePanel(float top, float width, float height) {
+  beginPart("panels", {0.0f, top}, {width - kSplitterWidth * window_.contentScale(), height}, ImGui::GetStyle().WindowPadding);
   volume_.draw(state_, grids_);
   look_.draw(state_, grids_);
   light_.draw(state_);
@@ -215,13 +217,14 @@ void Viewer::drawWindow() {
   }
   const ImVec2 display = ImGui::GetIO().DisplaySize;
   const float status = ImGui::GetFrameHeight(), height = std::max(display.y - top - status, 1.0f);
-  panelWidth_ = std::min(panelWidth_, std::max(0.6f * display.x, 1.0f));
-  const float left = showsPanel_ ? panelWidth_ : 0.0f;
+  // A window that is narrow for a while leaves the width as it was chosen.
+  const float panel = std::min(panelWidth_, std::max(kMaxPanelShare * display.x, 1.0f));
+  const float left = showsPanel_ ? panel : 0.0f;
   if (showsPanel_) {
-    drawSidePanel(top, height);
-    drawSplitter(panelWidth_, window_.contentScale(), top, height);
+    drawSidePanel(top, panel, height);
+    if (const std::optional<float> dragged = drawSplitter(panel, window_.contentScale(), top, height)) panelWidth_ = *dragged;
   }
-  const float room = std::max(display.x - left, 1.0f), slices = state_.overlays.slices ? std::floor(0.3f * room) : 0.0f;
+  const float room = std::max(display.x - left, 1.0f), slices = state_.overlays.slices ? std::floor(kSlicesShare * room) : 0.0f;
   drawImage(left, room - slices, top, height);
   if (slices > 1.0f) drawSlices(left + room - slices, top, height);
   const auto writing = export_.activity();
@@ -302,7 +305,15 @@ void Viewer::writeScreenshot() const {
 }
 
 /// The first complete image of an opened file.
-void Viewer::storeThumbnail() {
+void Viewer::rememberOpened() {
+  if (!opened_.empty() && director_.isComplete(state_)) {
+    if (isWorthRemembering(opened_)) store_.remember(opened_);
+    opened_.clear();
+  }
+  if (!state_.problem.empty()) {  // no image of what was opened last will come
+    opened_.clear();
+    thumbnailOf_.clear();
+  }
   if (thumbnailOf_.empty() || !director_.isComplete(state_) || fades() || options_.screenshot) return;
   store_.storeThumbnail(thumbnailOf_, downloadImage(*device_, *state_.whole->image), state_.scene.output.look());
   thumbnailOf_.clear();
@@ -334,7 +345,7 @@ void Viewer::run() {
     takeImages();
     drawFrame();
     director_.ask(state_, area_.pixels(), area_.moves() || volume_.frames().plays());
-    storeThumbnail();
+    rememberOpened();
     if (options_.screenshot && completeFrames_ >= options_.after.value_or(1)) return;
   }
   end();

@@ -24,6 +24,8 @@
 
 namespace freevoxels {
 
+/// The viewer's window: draws the panels and the image in it, and performs what the user chooses. Used by the main thread alone; other
+/// threads make images (image_maker.h) and write files (export_job.h).
 class Viewer {
  public:
   /// Fails with ErrorKind::Device if there is no display, or no device that can draw into one.
@@ -42,17 +44,17 @@ class Viewer {
   bool fades() const;
   void drawFrame();
   void drawWindow();
-  void drawSidePanel(float top, float height);
+  void drawSidePanel(float top, float width, float height);
   void drawImage(float left, float width, float top, float height);
   void drawSlices(float left, float top, float height);
   void act();
   void takeOutput();
   void perform(Action action);
-  void look(Action action);
+  void changeView(Action action);
   std::array<ActionState, kActions> actionStates() const;
   void open(const std::string& file);
   void opened(const std::string& file);
-  void storeThumbnail();
+  void rememberOpened();
   void storeLastScene();
   double patience() const;
   void writeScreenshot() const;
@@ -82,6 +84,7 @@ class Viewer {
   float panelWidth_;
   bool showsPanel_ = true, showsKeys_ = false;
   std::optional<Action> chosen_;       ///< in the menus
+  std::string opened_;                 ///< the opened file that has made no image yet
   std::string thumbnailOf_;            ///< the opened file that has no thumbnail yet
   bool edited_ = false;                ///< in the last frame
   Clock::time_point lastEdit_, painted_, shown_;

@@ -140,9 +140,18 @@ bool choose(const char* label, const std::vector<std::string>& words, int& value
   return changed;
 }
 
+bool checkBox(const char* label, bool* value) {
+  ImGui::PushStyleVar(ImGuiStyleVar_FrameBorderSize, 1.0f);
+  ImGui::PushStyleColor(ImGuiCol_Border, {0.55f, 0.55f, 0.57f, 1.0f});  // 4.4 times as light as the panel
+  const bool changed = ImGui::Checkbox(label, value);
+  ImGui::PopStyleColor();
+  ImGui::PopStyleVar();
+  return changed;
+}
+
 bool tick(const char* label, bool& value) {
   ImGui::SetCursorPosX(ImGui::GetCursorPosX() + kLabelWidth * ImGui::GetFontSize());
-  return ImGui::Checkbox(label, &value);
+  return checkBox(label, &value);
 }
 
 bool tick(const char* label, std::optional<bool>& value, bool usual) {

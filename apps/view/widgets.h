@@ -46,6 +46,8 @@ bool choose(const char* label, const Words<Enum>& words, std::optional<Enum>& va
   if (value == usual) value.reset();
   return true;
 }
+/// A check box with an outline, so that an empty one is seen as such.
+bool checkBox(const char* label, bool* value);
 bool tick(const char* label, bool& value);
 bool tick(const char* label, std::optional<bool>& value, bool usual);
 /// Returns true when the text is complete: at Enter, or when the cursor leaves it.

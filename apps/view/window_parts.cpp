@@ -29,7 +29,7 @@ void beginPart(const char* name, ImVec2 low, ImVec2 size, ImVec2 padding, ImGuiW
   ImGui::PopStyleVar(4);
 }
 
-void drawSplitter(float& panelWidth, float scale, float top, float height) {
+std::optional<float> drawSplitter(float panelWidth, float scale, float top, float height) {
   const float width = kSplitterWidth * scale;
   beginPart("splitter", {panelWidth - width, top}, {width, height}, {0.0f, 0.0f}, 0);
   ImGui::InvisibleButton("splitter", {width, std::max(height, 1.0f)});
@@ -38,10 +38,12 @@ void drawSplitter(float& panelWidth, float scale, float top, float height) {
     ImGui::GetWindowDrawList()->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
                                               ImGui::GetColorU32(ImGuiCol_SliderGrab));
   }
+  std::optional<float> dragged;
   if (ImGui::IsItemActive())
-    panelWidth = std::clamp(ImGui::GetIO().MousePos.x + 0.5f * width, kMinPanelWidth * scale,
-                             std::max(0.6f * ImGui::GetIO().DisplaySize.x, kMinPanelWidth * scale));
+    dragged = std::clamp(ImGui::GetIO().MousePos.x + 0.5f * width, kMinPanelWidth * scale,
+                         std::max(kMaxPanelShare * ImGui::GetIO().DisplaySize.x, kMinPanelWidth * scale));
   ImGui::End();
+  return dragged;
 }
 
 void drawStatusBar(const ViewState& state, const Activity& activity, bool writes, float top, float height) {

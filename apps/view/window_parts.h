@@ -15,12 +15,15 @@ inline constexpr ImGuiWindowFlags kFixedWindow = ImGuiWindowFlags_NoMove | ImGui
                                                  ImGuiWindowFlags_NoBringToFrontOnFocus | ImGuiWindowFlags_NoSavedSettings;
 
 inline constexpr float kSplitterWidth = 6.0f;
+/// Of the window's width.
+inline constexpr float kMaxPanelShare = 0.6f;
 
 /// Begins a Dear ImGui window without border at a place in the window; ImGui::End() ends it.
 void beginPart(const char* name, ImVec2 low, ImVec2 size, ImVec2 padding, ImGuiWindowFlags flags = 0);
 
-/// The border at the right end of the panel, kSplitterWidth wide, which can be dragged. `scale` is Window::contentScale().
-void drawSplitter(float& panelWidth, float scale, float top, float height);
+/// The border at the right end of the panel, kSplitterWidth wide. Returns the panel's new width while it is dragged. `scale` is
+/// Window::contentScale().
+std::optional<float> drawSplitter(float panelWidth, float scale, float top, float height);
 
 /// What is being done, and the fraction of it that is done.
 using Activity = std::optional<std::pair<std::string, double>>;
