@@ -162,7 +162,7 @@ FixedSums CubeDrawing::drawShares(const Camera& camera, const FrameSettings& wan
     if (frame.rows.x == frame.rows.y) continue;
     state.march(frame);
     const StageTimer timer(state.times, "copy to host");
-    addSamples(sums, state.gather->downloadGathered(), frame.rows, group > 0);
+    addSamples(sums, state.gather->downloadRows(frame.rows), frame.rows, group > 0);
   }
   return sums;
 } catch (const Error& error) {

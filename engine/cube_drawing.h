@@ -43,7 +43,11 @@ class CubeDrawing {
   /// The sums of a part's rows of samples. Those of all parts add up to the same bits, however many parts there are.
   FixedSums drawShares(const Camera& camera, const FrameSettings& settings, const SharePart& part, const Progress& progress);
 
-  /// Of the last frame, with the light that it swept.
+  /// `error`, with which a frame failed for lack of memory; or, where a limit is less than the device's memory, a sentence with the memory
+  /// that the frame needs.
+  Error withNeed(const Error& error, const Camera& camera, const FrameSettings& settings) const;
+
+  /// Stage times of the last frame, with those of the light that it swept.
   const std::vector<StageTime>& timings() const;
   /// The light of frames that have it; null if none had.
   const ScatteringSolver* scattered() const;

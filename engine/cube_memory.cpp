@@ -63,6 +63,10 @@ Error CubeDrawing::State::withNeed(const Error& error, const Camera& camera, con
                   device.memoryBytes() >> 20));
 }
 
+Error CubeDrawing::withNeed(const Error& error, const Camera& camera, const FrameSettings& settings) const {
+  return state_->withNeed(error, camera, settings);
+}
+
 VolumeMemory CubeDrawing::memory() const {
   const DeviceVolume& whole = state_->levelAt(0).onDevice;
   const HierarchyLayout hierarchy(glm::min(whole.layout.dimensions, kCubeEdge + 2 * kHalo));

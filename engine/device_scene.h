@@ -38,7 +38,7 @@ class DeviceScene {
   TargetPool targetPool;
 
   VolumeMemory memory() const;
-  /// With the blocks.
+  /// The volume with its classified blocks, which are made if they do not exist yet.
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
   /// The attenuation table, with the levels above the voxels if a frame may look them up.
   const AttenuationTable& table(bool withLevels, const Progress& progress = {});
@@ -48,9 +48,9 @@ class DeviceScene {
   void prepareLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress);
   /// The same without scattered light.
   void prepareOwnLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress);
-  /// Of the last frame that was lit.
+  /// The lights of the last lit frame; only valid after prepareLights() or prepareOwnLights().
   const LightPass& lights() const { return *lights_; }
-  /// Null if that has no such light.
+  /// Its scattered light; null if the last lit frame had none.
   const ScatteringSolver* scattered() const { return scatters_ ? &*scattering_ : nullptr; }
   /// Submits the commands, waits for them and adds their times to those of the frame.
   void submit(Commands& commands, const Progress& progress = {});

@@ -75,12 +75,12 @@ FixedSums GatherDrawing::shares(const Frame& frame, const SharePart& part, const
   if (rows.x == rows.y) return sums;
   const shader::GatherFrame own = frameOfRows(frame.lattice, rows);
   Commands commands(scene_.device);
-  pass_->begin(commands, own);
   commands.beginPass("gather");
+  pass_->begin(commands, own);
   pass_->recordSamples(commands, *volume_, own);
   scene_.submit(commands, progress);
   const StageTimer timer(scene_.frameTimes, "copy to host");
-  addSamples(sums, pass_->downloadGathered(), rows);
+  addSamples(sums, pass_->downloadRows(rows), rows);
   return sums;
 }
 

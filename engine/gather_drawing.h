@@ -36,7 +36,6 @@ class GatherDrawing {
   /// After the first frame.
   const GatherVolume& volume() const { return *volume_; }
   GatherPass& pass() { return *pass_; }
-  bool hasPass() const { return pass_.has_value(); }
 
  private:
   void prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress);

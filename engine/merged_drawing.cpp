@@ -187,7 +187,7 @@ FixedSums MergedDrawing::shares(const Camera& camera, const FrameSettings& setti
   pass_.recordSamples(commands, frame.parts, camera);
   submit(commands, progress);
   const StageTimer timer(times_, "copy to host");
-  addSamples(sums, pass_.pass().downloadGathered(), rows);
+  addSamples(sums, pass_.pass().downloadRows(rows), rows);
   return sums;
 }
 

@@ -29,7 +29,7 @@ class MergedDrawing {
 
   VolumeMemory memory() const;
   std::vector<StageTime> buildTimings() const;
-  /// Of the last frame.
+  /// Stage times of the last frame.
   std::vector<StageTime> frameTimings() const;
   const ScatteringSolver* scattered() const { return scatters_ ? &*scattering_ : nullptr; }
 

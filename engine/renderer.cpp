@@ -26,13 +26,17 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
          leastGatherBytes(brickVoxels(source), outline.dimensions, outline.indexToWorld, nullptr, emits) > device.memoryBytes();
 }
 
+const SceneVolume& firstOf(const std::vector<SceneVolume>& volumes) {
+  FV_CHECK_LT(std::size_t(0), volumes.size());
+  return volumes.front();
+}
+
 /// Instead of making blocks of a volume whose voxels cannot be numbered.
 [[noreturn]] void failUnnumbered(const Volume& outline, const std::string& whyNotCubes) {
   const glm::ivec3 box = outline.dimensions;
   fail(ErrorKind::OutOfMemory,
        "a volume of {}x{}x{} voxels, {} of which have data, is drawn piece by piece alone, as no more than {} voxels can be numbered, and "
-       "{}: "
-       "draw it by gathering with other shadows, or crop or resample it",
+       "{}: draw it by gathering with other shadows, or crop or resample it",
        box.x, box.y, box.z, outline.activeVoxels, kMaxNumberedVoxels, whyNotCubes);
 }
 
@@ -41,8 +45,7 @@ bool exceeds(const Device& device, const VolumeSource& source, bool emits) {
   const glm::ivec3 box = outline.dimensions;
   fail(ErrorKind::OutOfMemory,
        "a volume of {}x{}x{} voxels, {} million of them with data, needs more than the {} MiB of device memory or half of the {} MiB of "
-       "this machine: "
-       "raise {}, or crop or resample the volume; it cannot be drawn piece by piece, as {}",
+       "this machine: raise {}, or crop or resample the volume; it cannot be drawn piece by piece, as {}",
        box.x, box.y, box.z, outline.activeVoxels / 1000000, device.memoryBytes() >> 20, machineMemoryBytes() >> 20,
        Parameter("memory-limit"), whyNotCubes);
 }
@@ -69,7 +72,7 @@ Renderer::Renderer(const Device& device, const Volume& volume, const Classificat
                classification, table, progress) {}
 
 Renderer::Renderer(const Device& device, std::vector<SceneVolume> volumes, const TableSettings& table, const Progress& progress)
-    : Renderer(device, volumes.size() == 1 ? volumes.front().source : nullptr, volumes.front().classification, table, progress) {
+    : Renderer(device, volumes.size() == 1 ? volumes.front().source : nullptr, firstOf(volumes).classification, table, progress) {
   if (volumes.size() > 1) merged_ = std::make_unique<MergedDrawing>(device, std::move(volumes), table, progress);
 }
 
@@ -106,7 +109,7 @@ bool Renderer::surelyFits(const FrameSettings& settings) const {
                           device_.memoryBytes();
 }
 
-void Renderer::drawInCubes() {
+void Renderer::requireCubes() {
   inCubes_ = true;
 }
 
@@ -121,30 +124,29 @@ Error Renderer::withNeed(const Error& error, const FrameSettings& settings, cons
 /// Draws a frame of the whole volume, or cube by cube if that is too large for the device. Where it can be drawn cube by cube, nothing is
 /// drawn otherwise for lack of memory, so that the image does not depend on it. `mayChange` says whether lack of memory may change the way.
 template <typename DrawWhole, typename DrawCubes>
-auto Renderer::draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole,
-                    const DrawCubes& drawCubes) {
+auto Renderer::draw(const Camera& camera, const FrameSettings& settings, bool mayChange, const Progress& progress,
+                    const DrawWhole& drawWhole, const DrawCubes& drawCubes) {
   builtInFrame_ = false;
   const std::optional<std::string> whyNotCubes = CubeDrawing::whyNot(settings);
   try {
     checkFrameFits(device_, settings);
   } catch (const Error& error) {
     if (whyNotCubes) throw withNeed(error, settings, *whyNotCubes);
-    CubeDrawing alone(device_, source_, classification_, table_);
-    return drawCubes(alone, settings);  // which says what the frame needs
+    throw CubeDrawing(device_, source_, classification_, table_).withNeed(error, camera, settings);
   }
   drewInCubes_ = inCubes_ && !whyNotCubes;
   if (!drewInCubes_) {
     if (isTooLarge_ && source_->outline().voxelCount() > kMaxNumberedVoxels) failUnnumbered(source_->outline(), *whyNotCubes);
     if (isTooLarge_ && !source_->isInMemory()) failTooLarge(device_, source_->outline(), *whyNotCubes);
     try {
-      return drawWhole(whole(progress), settings);
+      return drawWhole(whole(progress));
     } catch (const Error& error) {
       if (error.kind() != ErrorKind::OutOfMemory) throw;
       if (whyNotCubes || !mayChange) throw withNeed(error, settings, whyNotCubes.value_or(""));
     }
     inCubes_ = drewInCubes_ = true;
   }
-  return drawCubes(cubes(), settings);
+  return drawCubes(cubes());
 }
 
 void Renderer::check(const Camera& camera, const FrameSettings& settings) const {
@@ -166,9 +168,9 @@ void Renderer::check(const Camera& camera, const FrameSettings& settings) const 
 Image Renderer::render(const Camera& camera, const FrameSettings& settings, const Progress& progress) {
   check(camera, settings);
   if (merged_) return downloadImage(device_, *merged_->draw(camera, settings, progress));
-  const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
+  const auto drawWhole = [&](State& state) {
     Commands commands(device_);
-    const std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, fitting, progress);
+    const std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, settings, progress);
     commands.beginPass("read back");
     state.colorReadback.record(device_, commands, targets->colorEnergy);
     if (settings.depth) state.distanceReadback.record(device_, commands, targets->distance);
@@ -178,24 +180,22 @@ Image Renderer::render(const Camera& camera, const FrameSettings& settings, cons
                  .pixels = state.colorReadback.read<glm::vec4>(),
                  .depth = settings.depth ? state.distanceReadback.read<float>() : std::vector<float>()};
   };
-  const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) {
-    return downloadImage(device_, *drawing.draw(camera, fitting, progress));
-  };
-  return draw(settings, true, progress, drawWhole, drawCubes);
+  const auto drawCubes = [&](CubeDrawing& drawing) { return downloadImage(device_, *drawing.draw(camera, settings, progress)); };
+  return draw(camera, settings, true, progress, drawWhole, drawCubes);
 }
 
 std::shared_ptr<const FrameTargets> Renderer::renderOnDevice(const Camera& camera, const FrameSettings& settings,
                                                              const Progress& progress) {
   check(camera, settings);
   if (merged_) return merged_->draw(camera, settings, progress);
-  const auto drawWhole = [&](State& state, const FrameSettings& fitting) {
+  const auto drawWhole = [&](State& state) {
     Commands commands(device_);
-    std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, fitting, progress);
+    std::shared_ptr<const FrameTargets> targets = state.record(commands, camera, settings, progress);
     state.submit(commands, progress);
     return targets;
   };
-  const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) { return drawing.draw(camera, fitting, progress); };
-  return draw(settings, true, progress, drawWhole, drawCubes);
+  const auto drawCubes = [&](CubeDrawing& drawing) { return drawing.draw(camera, settings, progress); };
+  return draw(camera, settings, true, progress, drawWhole, drawCubes);
 }
 
 FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& wanted, const SharePart& part, const Progress& progress) {
@@ -206,11 +206,9 @@ FixedSums Renderer::renderShares(const Camera& camera, const FrameSettings& want
   if (merged_) return merged_->shares(camera, wanted, part, progress);
   FrameSettings settings = wanted;
   if (!settings.gathers()) settings.splats().cullThreshold = 0.0f;  // what hides a splat may be another part's
-  const auto drawWhole = [&](State& state, const FrameSettings& fitting) { return state.shares(camera, fitting, part, progress); };
-  const auto drawCubes = [&](CubeDrawing& drawing, const FrameSettings& fitting) {
-    return drawing.drawShares(camera, fitting, part, progress);
-  };
-  return draw(settings, false, progress, drawWhole, drawCubes);
+  const auto drawWhole = [&](State& state) { return state.shares(camera, settings, part, progress); };
+  const auto drawCubes = [&](CubeDrawing& drawing) { return drawing.drawShares(camera, settings, part, progress); };
+  return draw(camera, settings, false, progress, drawWhole, drawCubes);
 }
 
 VolumeMemory Renderer::memory() const {

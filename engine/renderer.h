@@ -39,11 +39,11 @@ class Renderer {
   /// blocks.
   Renderer(const Device& device, std::shared_ptr<const VolumeSource> source, const Classification& classification,
            const TableSettings& table, const Progress& progress = {});
-  /// Of a volume in memory, which must outlive the renderer.
+  /// The same for a volume that is in memory; it must outlive the renderer.
   Renderer(const Device& device, const Volume& volume, const Classification& classification, const TableSettings& table,
            const Progress& progress = {});
-  /// Of one or several volumes, which attenuate and shadow each other: gathered frames alone, with at most four lights, of volumes that are
-  /// on the device as a whole. Their order changes no bit.
+  /// Draws one or more volumes, which attenuate and shadow each other. Several can only be gathered, with at most four lights, and must all
+  /// fit on the device as a whole. Their order does not change the image.
   Renderer(const Device& device, std::vector<SceneVolume> volumes, const TableSettings& table, const Progress& progress = {});
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
   ~Renderer();
@@ -64,9 +64,9 @@ class Renderer {
   /// Whether the gather takes so much less than the device's memory that frames will be drawn of the whole volume, and not cube by cube.
   /// True where only the whole volume can be drawn.
   bool surelyFits(const FrameSettings& settings) const;
-  /// Has all gathered frames drawn cube by cube from now on.
-  void drawInCubes();
-  /// Whether the last frame was drawn so.
+  /// From now on all gathered frames are drawn cube by cube.
+  void requireCubes();
+  /// Whether the last frame was drawn cube by cube.
   bool drewInCubes() const { return drewInCubes_; }
   /// How many cubes that frame read, by level of detail.
   std::vector<std::size_t> cubesRead() const;
@@ -75,9 +75,9 @@ class Renderer {
   VolumeMemory memory() const;
   /// Stage times of what is kept for all frames, and of the last frame, in order.
   std::vector<StageTime> timings() const;
-  /// Those of what is kept, as it was made last; none where frames are drawn cube by cube.
+  /// Stage times of what is kept for all frames; empty where frames are drawn cube by cube.
   std::vector<StageTime> buildTimings() const;
-  /// Those of the last frame, in which what is kept is included where it was made for that frame.
+  /// Stage times of the last frame, including what was made for it and then kept.
   std::vector<StageTime> frameTimings() const;
   /// The number of occupied voxels. Unknown until a frame needs the blocks of these.
   std::optional<std::uint64_t> occupiedVoxelCount() const;
@@ -92,7 +92,8 @@ class Renderer {
   State& whole(const Progress& progress);
   CubeDrawing& cubes();
   template <typename DrawWhole, typename DrawCubes>
-  auto draw(FrameSettings settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole, const DrawCubes& drawCubes);
+  auto draw(const Camera& camera, const FrameSettings& settings, bool mayChange, const Progress& progress, const DrawWhole& drawWhole,
+            const DrawCubes& drawCubes);
   void check(const Camera& camera, const FrameSettings& settings) const;
   Error withNeed(const Error& error, const FrameSettings& settings, const std::string& whyNotCubes) const;
 

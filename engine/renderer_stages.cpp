@@ -1,5 +1,7 @@
 #include "engine/renderer_stages.h"
 
+#include <cstring>
+
 #include "engine/attenuation/ray_sweep.h"
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
@@ -30,21 +32,33 @@ std::vector<SplatSums> RendererStages::renderSums(const Camera& camera, const Fr
   return sums.read(frame.constants);
 }
 
-void RendererStages::clearGather() const {
-  if (!state_.gather.hasPass()) return;
+/// Sets the sums that an earlier frame left to 0, so that samples that this frame leaves out are noticed.
+void RendererStages::clearGather(const Camera& camera, const FrameSettings& settings) const {
+  const GatherDrawing::Frame frame = state_.gather.prepare(camera, settings, {});
   Commands clearing(state_.scene.device);
-  state_.gather.pass().recordClear(clearing);
+  state_.gather.pass().recordClear(clearing, frame.lattice);
   clearing.submitAndWait();
 }
 
 std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const FrameSettings& settings,
                                                     std::span<const std::uint32_t> places) const {
-  clearGather();
+  const Device& device = state_.scene.device;
+  clearGather(camera, settings);
   const GatherDrawing::Frame frame = state_.gather.prepare(camera, settings, {});
-  Commands commands(state_.scene.device);
+  constexpr std::size_t kGroup = shader::kGatherTile * shader::kGatherTile;
+  const auto groups = std::uint32_t((places.size() + kGroup - 1) / kGroup);
+  FV_CHECK_LE(groups, device.limits().maxComputeWorkGroupCount[1]);
+  shader::SampleListHead head{.ranges = {}, .count = std::uint32_t(places.size())};
+  head.ranges[0] = {.x = 1, .y = groups, .z = 1};
+  const Buffer list(device, sizeof(head) + places.size_bytes(), MemoryUse::Upload, "listed samples", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
+  std::memcpy(list.mapped(), &head, sizeof(head));
+  std::memcpy(list.mapped() + sizeof(head), places.data(), places.size_bytes());
+
+  Commands commands(device);
   GatherPass& pass = state_.gather.pass();
   pass.begin(commands, frame.lattice);
-  pass.recordListed(commands, state_.gather.volume(), frame.lattice, places);
+  pass.dispatch(commands, state_.gather.volume(), frame.lattice, {.frame = &pass.frameBuffer(), .arguments = &list, .mostGroups = groups},
+                {.list = addressWords(list.address()), .step = 0, .groupsOfARow = 1, .rowsOfARange = int(groups)});
   commands.submitAndWait();
   return pass.downloadGathered();
 }
@@ -52,7 +66,7 @@ std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const 
 GatherStages RendererStages::renderGatherStages(const Camera& camera, const FrameSettings& settings) const {
   FV_CHECK_EQ(settings.gathers(), true);
   checkFrameFits(state_.scene.device, settings);
-  clearGather();
+  clearGather(camera, settings);
   Commands commands(state_.scene.device);
   const std::shared_ptr<const FrameTargets> targets = state_.record(commands, camera, settings, {});
   state_.submit(commands);

@@ -48,7 +48,7 @@ class RendererStages {
   std::vector<GatherSums> marchListed(const Camera& camera, const FrameSettings& settings, std::span<const std::uint32_t> places) const;
 
  private:
-  void clearGather() const;
+  void clearGather(const Camera& camera, const FrameSettings& settings) const;
 
   Renderer::State& state_;
 };

@@ -12,7 +12,7 @@
 
 // The number of groups of ray.group slices, starting at `slice` in the ray's direction, that are empty; 0 if
 // the first may not be.
-int emptyGroups(Slices level, Ray ray, int slice) {
+int emptyGroups(LevelGeometry level, Ray ray, int slice) {
   const float first = float(slice), last = float(slice) + ray.direction * float(ray.group - 1);
   const vec2 low = min(ray.origin + ray.slope * first, ray.origin + ray.slope * last);
   ivec3 place = ivec3(floor(vec3(low, min(first, last))));
@@ -22,14 +22,21 @@ int emptyGroups(Slices level, Ray ray, int slice) {
                                        cell.z * level.skipStrides.z).x);
 }
 
+// Rays more parallel to a side than this move by this much a slice, so that nothing is divided by 0.
+const float kMinSlope = 1e-7;
+
+// The part of `range` in which a ray is between `low` and `high` on a side.
+vec2 clipped(vec2 range, float origin, float slope, float low, float high) {
+  if (abs(slope) < kMinSlope) slope = kMinSlope;
+  const float a = (low - origin) / slope, b = (high - origin) / slope;
+  return vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
+}
+
 // The slices `slices.x` to `slices.y` - 1 that the ray meets inside the volume, in front of the eye and of the ray's end.
-ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
+ivec2 slicesOnRay(LevelGeometry level, Ray ray, ivec2 slices) {
   vec2 range = vec2(slices) - vec2(0.0, 1.0);
-  [[unroll]] for (int side = 0; side < 2; ++side) {
-    const float slope = abs(ray.slope[side]) < 1e-7 ? 1e-7 : ray.slope[side];
-    const float a = (-1.0 - ray.origin[side]) / slope, b = (float(level.dimensions[side]) - ray.origin[side]) / slope;
-    range = vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
-  }
+  [[unroll]] for (int side = 0; side < 2; ++side)
+    range = clipped(range, ray.origin[side], ray.slope[side], -1.0, float(level.dimensions[side]));
   if (ray.direction > 0.0)
     range.x = max(range.x, ray.eye - 1.0);
   else
@@ -46,42 +53,40 @@ ivec2 slicesOnRay(Slices level, Ray ray, ivec2 slices) {
 }
 
 // With kCube: the slices, of which the first and the last may be too many, on which the ray is in the cube.
-ivec2 slicesInCube(Slices level, Ray ray) {
+ivec2 slicesInCube(LevelGeometry level, Ray ray) {
   vec2 range = vec2(level.begin.z, level.end.z - 1);
-  [[unroll]] for (int side = 0; side < 2; ++side) {
-    const float slope = abs(ray.slope[side]) < 1e-7 ? 1e-7 : ray.slope[side];
-    // The first cube of the volume has the positions up to a voxel before it, too.
-    const float a = (float(level.begin[side]) - 1.0 - ray.origin[side]) / slope, b = (float(level.end[side]) - ray.origin[side]) / slope;
-    range = vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
-  }
+  // The first cube of the volume has the positions up to a voxel before it, too.
+  [[unroll]] for (int side = 0; side < 2; ++side)
+    range = clipped(range, ray.origin[side], ray.slope[side], float(level.begin[side]) - 1.0, float(level.end[side]));
   range = clamp(range, vec2(level.begin.z - 2), vec2(level.end.z + 2));
   return ivec2(floor(range.x), ceil(range.y));
 }
 
-SliceValues sliceValuesAt(Slices level, Ray ray, int slice, bool scalars) {
+SliceValues sliceValuesAt(LevelGeometry level, Ray ray, int slice, bool scalars) {
   if (kScalars) {
     if (scalars) return scalarValuesAt(level, ray.origin + ray.slope * float(slice), slice, ray.toEye);
   }
   return blockValuesAt(level, ray, slice, true);
 }
 
-// Moves on to the next stretch whose scalars add something, or until `left` is `rest`, and adds it; where light is not evaluated at samples
-// by one stretch. The search is a loop of its own, so that stretches that add nothing are not lit: lavapipe executes a branch even if no
-// lane takes it.
-void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final) {
+// Moves on to the next stretch whose scalars add something, or until `slicesLeft` is `leftAfterGroup`, and adds it; where light is not
+// evaluated at samples by one stretch. The search is a loop of its own, so that stretches that add nothing are not lit: lavapipe executes a
+// branch even if no lane takes it.
+void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, inout int slicesLeft, LevelGeometry level, Ray ray,
+                    int leftAfterGroup, int final) {
   Stretch stretch;
-  int stop = rest;
+  int stop = leftAfterGroup;
   do {
-    if (!kSampled || left > stop) {
+    if (!kSampled || slicesLeft > stop) {
       stretch = scalarStretch(last, level, ray, slice, slice != final + int(ray.direction));
       slice += int(ray.direction);
-      --left;
+      --slicesLeft;
       if (stretch.adds)
-        stop = left;
-      else if (left > stop)
+        stop = slicesLeft;
+      else if (slicesLeft > stop)
         last = stretch.end;
     }
-  } while (kSampled && left > stop);
+  } while (kSampled && slicesLeft > stop);
   if (stretch.adds)
     addScalarStretch(sums, last, stretch, level, ray);
   else
@@ -89,7 +94,7 @@ void addNextScalars(inout Sums sums, inout SliceValues last, inout int slice, in
 }
 
 // Adds a slice of blocks, or the stretch up to it.
-void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
+void addBlocks(inout Sums sums, inout SliceValues last, LevelGeometry level, Ray ray, int slice, bool within) {
   if (kSampled || kMerged || kHoldout)
     addBlockStretch(sums, last, level, ray, slice, within);
   else
@@ -97,11 +102,11 @@ void addBlocks(inout Sums sums, inout SliceValues last, Slices level, Ray ray, i
 }
 
 // Branches on constants are nested, so that the compiler removes them.
-void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int left, Slices level, Ray ray, int rest, int final,
-             bool scalars) {
+void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int slicesLeft, LevelGeometry level, Ray ray,
+             int leftAfterGroup, int final, bool scalars) {
   if (kScalars && !kProjected) {
     if (scalars) {
-      addNextScalars(sums, last, slice, left, level, ray, rest, final);
+      addNextScalars(sums, last, slice, slicesLeft, level, ray, leftAfterGroup, final);
       return;
     }
   }
@@ -110,76 +115,78 @@ void addNext(inout Sums sums, inout SliceValues last, inout int slice, inout int
   else
     addBlocks(sums, last, level, ray, slice, slice != final + int(ray.direction));
   slice += int(ray.direction);
-  --left;
+  --slicesLeft;
 }
 
-// Where stretches between slices are added, one more slice is marched, which ends the last of them.
-void march(inout Sums sums, Slices level, Ray ray, ivec2 slices, float endTransmittance, bool scalars) {
+// Alternates between two steps until no slice is left or the ray is opaque: (1) skips groups of slices that hold nothing; (2) marches one
+// group. A stretch lies between two slices, so that step 1 goes back by one where the stretch into the first occupied slice may add
+// something, and one slice more is marched, which ends the last stretch.
+void march(inout Sums sums, LevelGeometry level, Ray ray, ivec2 slices, float endTransmittance, bool scalars) {
   const int direction = int(ray.direction);
   const int final = direction > 0 ? slices.y : slices.x;
   int slice = direction > 0 ? slices.x : slices.y;
-  int left = slices.y - slices.x + 1;
-  if (left <= 0) return;
+  int slicesLeft = slices.y - slices.x + 1;
+  if (slicesLeft <= 0) return;
   const int begin = slice;
   const bool stretches = scalars || kSampled || kMerged || kHoldout;
-  if (stretches) ++left;
+  if (stretches) ++slicesLeft;
   SliceValues last = emptySliceValues();
   if (kCube) {
-    const ivec2 own = slicesInCube(level, ray);
-    const int before = max(direction > 0 ? own.x - slice : slice - own.y, 0);
+    const ivec2 slicesOfCube = slicesInCube(level, ray);
+    const int before = max(direction > 0 ? slicesOfCube.x - slice : slice - slicesOfCube.y, 0);
     slice += direction * before;
     // And the slice that ends the last stretch.
-    left = min(left - before, (direction > 0 ? own.y - slice : slice - own.x) + 2);
-    if (left <= 0) return;
+    slicesLeft = min(slicesLeft - before, (direction > 0 ? slicesOfCube.y - slice : slice - slicesOfCube.x) + 2);
+    if (slicesLeft <= 0) return;
     if (stretches && slice != begin) last = sliceValuesAt(level, ray, slice - direction, scalars);
   }
   do {
-    if (left > 0) {
-      const int leftBefore = left;
-      int tested = left + 1;  // what was left at the last test
+    if (slicesLeft > 0) {
+      const int leftAtGroup = slicesLeft;
+      int leftAtLastTest = slicesLeft + 1;
       do {
-        if (left > 0 && left < tested) {
-          tested = left;
+        if (slicesLeft > 0 && slicesLeft < leftAtLastTest) {
+          leftAtLastTest = slicesLeft;
           // A stretch from the slice before may add something, so that this one has to be empty, too.
-          const int before = left == leftBefore && last.coverage > 0.0 ? 1 : 0;
-          left -= max(emptyGroups(level, ray, slice + direction * (leftBefore - left - before)) * ray.group - before, 0);
+          const int before = slicesLeft == leftAtGroup && last.coverage > 0.0 ? 1 : 0;
+          slicesLeft -= max(emptyGroups(level, ray, slice + direction * (leftAtGroup - slicesLeft - before)) * ray.group - before, 0);
         }
-      } while (left > 0 && left < tested);
-      slice += direction * (leftBefore - left);
-      const bool skipped = left < leftBefore;
+      } while (slicesLeft > 0 && slicesLeft < leftAtLastTest);
+      slice += direction * (leftAtGroup - slicesLeft);
+      const bool skipped = slicesLeft < leftAtGroup;
       if (skipped) last = emptySliceValues();
       // The stretch from the last slice that was skipped may add something.
-      if (skipped && stretches && left > 0) {
+      if (skipped && stretches && slicesLeft > 0) {
         slice -= direction;
-        ++left;
+        ++slicesLeft;
       }
-      const int rest = left - min(left, ray.group);
+      const int leftAfterGroup = slicesLeft - min(slicesLeft, ray.group);
       do {
-        if (left > rest) addNext(sums, last, slice, left, level, ray, rest, final, scalars);
-      } while (left > rest);
-      if (sums.transmittance <= endTransmittance) left = 0;
+        if (slicesLeft > leftAfterGroup) addNext(sums, last, slice, slicesLeft, level, ray, leftAfterGroup, final, scalars);
+      } while (slicesLeft > leftAfterGroup);
+      if (sums.transmittance <= endTransmittance) slicesLeft = 0;
     }
-  } while (left > 0);
+  } while (slicesLeft > 0);
 }
 
-Slices slicesOf(int levelIndex) {
+LevelGeometry geometryOf(int levelIndex) {
   const GatherLevel level = frame.levels[levelIndex];
-  Slices slices;
-  slices.dimensions = ivec2(level.dimensions[kSideA], level.dimensions[kSideB]);
-  slices.count = level.dimensions[kAxis];
-  slices.firstCell = level.firstCell;
+  LevelGeometry geometry;
+  geometry.dimensions = ivec2(level.dimensions[kSideA], level.dimensions[kSideB]);
+  geometry.count = level.dimensions[kAxis];
+  geometry.firstCell = level.firstCell;
   const ivec3 cellStrides = ivec3(1, level.cellStrides), skipStrides = ivec3(1, level.skipStrides);
-  slices.cellStrides = ivec3(cellStrides[kSideA], cellStrides[kSideB], cellStrides[kAxis]);
-  slices.firstSkip = level.firstSkip;
-  slices.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
-  slices.lastSkip = ivec3(level.lastSkip[kSideA], level.lastSkip[kSideB], level.lastSkip[kAxis]);
+  geometry.cellStrides = ivec3(cellStrides[kSideA], cellStrides[kSideB], cellStrides[kAxis]);
+  geometry.firstSkip = level.firstSkip;
+  geometry.skipStrides = ivec3(skipStrides[kSideA], skipStrides[kSideB], skipStrides[kAxis]);
+  geometry.lastSkip = ivec3(level.lastSkip[kSideA], level.lastSkip[kSideB], level.lastSkip[kAxis]);
   if (kCube) {
     const GatherCube cube = frame.cube;
-    slices.first = ivec3(cube.first[kSideA], cube.first[kSideB], cube.first[kAxis]);
-    slices.begin = ivec3(cube.begin[kSideA], cube.begin[kSideB], cube.begin[kAxis]);
-    slices.end = ivec3(cube.end[kSideA], cube.end[kSideB], cube.end[kAxis]);
+    geometry.first = ivec3(cube.first[kSideA], cube.first[kSideB], cube.first[kAxis]);
+    geometry.begin = ivec3(cube.begin[kSideA], cube.begin[kSideB], cube.begin[kAxis]);
+    geometry.end = ivec3(cube.end[kSideA], cube.end[kSideB], cube.end[kAxis]);
   }
-  return slices;
+  return geometry;
 }
 
 // The ray of a sample, the same for all levels, in voxels.
@@ -202,7 +209,7 @@ float holdoutAt(ivec2 index) {
 void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, int levelIndex, bool scalars) {
   // In blocks of the level, the centre of whose first is at half an edge minus half a voxel.
   const float edge = float(1 << levelIndex);
-  const Slices level = slicesOf(levelIndex);
+  const LevelGeometry level = geometryOf(levelIndex);
   Ray ray;
   ray.origin = (sampleRay.middle + sampleRay.slope * (0.5 * edge - 0.5 - frame.axes[kAxis].middlePlane) + 0.5) / edge - 0.5;
   ray.slope = sampleRay.slope;

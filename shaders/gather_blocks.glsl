@@ -37,7 +37,7 @@ vec4 mediumAt(int quad, vec4 weights, vec4 extinctions, vec3 toEye) {
 }
 
 // For classified blocks: source term and extinction are constant in a slice's layer.
-void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
+void addSlice(inout Sums sums, LevelGeometry level, Ray ray, int slice) {
   vec4 weights;
   const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
   const float ahead = (float(slice) - ray.eye) * ray.direction;
@@ -48,7 +48,7 @@ void addSlice(inout Sums sums, Slices level, Ray ray, int slice) {
 }
 
 // For classified blocks that are lit at samples: the values on a slice.
-SliceValues blockValuesAt(Slices level, Ray ray, int slice, bool within) {
+SliceValues blockValuesAt(LevelGeometry level, Ray ray, int slice, bool within) {
   vec4 weights;
   const vec2 position = ray.origin + ray.slope * float(slice);
   const int quad = quadAt(level, position, slice, weights);
@@ -71,8 +71,8 @@ vec3 leavingEmission(SliceValues last, SliceValues found, float stretch) {
   return 0.5 * (meanTransmittance(near) * last.emission + exp(-near) * meanTransmittance(far) * found.emission);
 }
 
-// The medium in the middle between two slices, between all eight blocks around: source term and extinction. Slices beyond the volume have none.
-vec4 mediumBetween(Slices level, Ray ray, int first, int second) {
+// The medium in the middle between two slices, between all eight blocks around: source term and extinction. LevelGeometry beyond the volume have none.
+vec4 mediumBetween(LevelGeometry level, Ray ray, int first, int second) {
   const vec2 position = ray.origin + ray.slope * (0.5 * float(first + second));
   vec4 sum = vec4(0.0);
   [[unroll]] for (int i = 0; i < 2; ++i) {
@@ -91,7 +91,7 @@ vec4 meanOfHalf(vec4 first, vec4 second, vec3 part) { return kHoldout ? mix(firs
 
 // Where no stencil restores footprints, beside other volumes and in front of a holdout: a stretch in two halves, whose means are those of
 // the ends and the middle.
-void addHalves(inout Sums sums, SliceValues last, SliceValues found, Slices level, Ray ray, int slice, float ahead, SegmentLight lit) {
+void addHalves(inout Sums sums, SliceValues last, SliceValues found, LevelGeometry level, Ray ray, int slice, float ahead, SegmentLight lit) {
   const vec4 middle = mediumBetween(level, ray, slice - int(ray.direction), slice);
   const vec3 near = halfStretch(ray, ahead - 0.5), far = halfStretch(ray, ahead);
   const vec4 nearMedium = meanOfHalf(last.medium, middle, near), farMedium = meanOfHalf(middle, found.medium, far);
@@ -117,7 +117,7 @@ void addHalves(inout Sums sums, SliceValues last, SliceValues found, Slices leve
 
 // For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
 // light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
-void addBlockStretch(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
+void addBlockStretch(inout Sums sums, inout SliceValues last, LevelGeometry level, Ray ray, int slice, bool within) {
   SliceValues found = blockValuesAt(level, ray, within ? slice : slice - int(ray.direction), within);
   const int isOwn = inCube;
   const vec4 medium = 0.5 * (last.medium + found.medium);

@@ -53,7 +53,7 @@ FV_CONSTANT float kMinTransmittance = 1e-6f;
 // A ray marches along the major axis of the image's middle, unless its component along that is less than this
 // fraction of its largest component: so most frames read one axis.
 FV_CONSTANT float kMinAlong = 0.5f;
-// Slices that are tested for emptiness together on rays that move by more than a block a slice, instead of kSkipGroup.
+// LevelGeometry that are tested for emptiness together on rays that move by more than a block a slice, instead of kSkipGroup.
 FV_CONSTANT int kObliqueGroup = kSkipGroup / 2;
 
 // How rays meet the slices of blocks across one index axis. Pixel positions (x, y) are relative to the

@@ -109,7 +109,7 @@ vec4 depthsTowardsLights(int quad, vec4 weights) {
 
 // Beyond the volume extinction falls to 0 within a block. So does the depth towards a light on that side, as the weights do; behind the
 // volume it stays as it is at the border.
-void continueDepths(inout vec4 depths, Slices level, vec2 position) {
+void continueDepths(inout vec4 depths, LevelGeometry level, vec2 position) {
   const vec2 first = clamp(position + 1.0, 1e-6, 1.0), last = clamp(vec2(level.dimensions) - position, 1e-6, 1.0);
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;

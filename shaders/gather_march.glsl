@@ -25,9 +25,9 @@ layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are
 layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
 layout(constant_id = 11) const bool kHoldout = false;  // whether rays end at the depths of a holdout
 
-// Loops that some lanes of a vector leave before others have the form `do { if (goes on) {...} } while (goes on)`, where `goes on` compares
-// integers. Lavapipe executes the bodies of other loops once more, masked; and what is assigned in a loop outside of the `if` it may compute
-// anew, for lanes that have left, from what they assigned last. Of a condition that is a bool the compiler may remove the `if`.
+// Loops that lanes leave at different times have the form `do { if (goOn) ... } while (goOn)`, where `goOn` compares integers: lavapipe
+// executes the body of any other loop once more with lanes masked, and computes values that are assigned outside of the `if` anew for lanes
+// that have left. With a bool as the condition the compiler could drop the `if`.
 
 layout(binding = 1) uniform utextureBuffer brickNumbers;
 // Each quad has two neighbours along the first side, at this position and at the next one along the second
@@ -40,18 +40,19 @@ layout(binding = 4) uniform utextureBuffer extraQuads;
 layout(binding = 5, rgba32f) SUMS_ACCESS uniform imageBuffer colorEnergy;  // C, E
 layout(binding = 6, r32f) SUMS_ACCESS uniform imageBuffer distances;       // sum of e times distance
 
+layout(binding = 8) uniform utextureBuffer skipCells;
 // Codes of optical depths towards each light, 16 bits each.
 layout(binding = 9) uniform utextureBuffer lightQuads0;
 layout(binding = 10) uniform utextureBuffer lightQuads1;
 layout(binding = 11) uniform utextureBuffer lightQuads2;
 layout(binding = 12) uniform utextureBuffer lightQuads3;
 layout(binding = 13) uniform textureBuffer scatteredTexels;  // ScatteredGrid, with kScattered
+layout(binding = 14) uniform utextureBuffer gradientTexels;  // packed gradients of blocks, in bricks; not with kPieces
+
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Holdout { float distances[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer MediumPiece { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Gradients { uint values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) readonly buffer SourcePiece { uvec4 values[]; };
-layout(binding = 8) uniform utextureBuffer skipCells;
-layout(binding = 14) uniform utextureBuffer gradientTexels;  // packed gradients of blocks, in bricks; not with kPieces
 
 const int kSideA = kAxis == 0 ? 1 : 0;
 const int kSideB = kAxis == 2 ? 1 : 2;
@@ -70,8 +71,8 @@ struct Ray {
   float reach;          // with kHoldout: slices of the level from the eye to the end of the ray
 };
 
-// The geometry of a level, read once for each level.
-struct Slices {
+// The sizes and strides of a level, read once for each level.
+struct LevelGeometry {
   ivec2 dimensions;     // of the sides, in blocks
   int count;
   int firstCell;
@@ -176,7 +177,7 @@ vec2 sideWeights(float position, int count, out int low) {
 }
 
 // The number of the brick that has the block at a position on the sides and the axis.
-int brickAt(Slices level, ivec3 block) {
+int brickAt(LevelGeometry level, ivec3 block) {
   if (kCube) {
     inCube = all(greaterThanEqual(block, level.begin)) && all(lessThan(block, level.end)) ? 1 : 0;
     block -= level.first;
@@ -187,7 +188,7 @@ int brickAt(Slices level, ivec3 block) {
 }
 
 // The quad of four blocks around a position on a slice, and their weights.
-int quadAt(Slices level, vec2 position, int slice, out vec4 weights) {
+int quadAt(LevelGeometry level, vec2 position, int slice, out vec4 weights) {
   ivec2 low;
   const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
   const vec2 b = sideWeights(position.y, level.dimensions.y, low.y);

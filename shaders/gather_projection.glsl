@@ -39,7 +39,7 @@ void project(inout Sums sums, float scalar, float coverage, float ahead, Ray ray
 
 // Adds the scalars at equal steps from the slice before, which is left out, to this one. A slice that is not `within` the level's slices has no
 // data.
-void addProjected(inout Sums sums, inout SliceValues last, Slices level, Ray ray, int slice, bool within) {
+void addProjected(inout Sums sums, inout SliceValues last, LevelGeometry level, Ray ray, int slice, bool within) {
   const int before = slice - int(ray.direction), steps = int(ceil(kStepsOfVoxel * sqrt(1.0 + dot(ray.slope, ray.slope))));
   int i = 1;
   bool more;

@@ -16,7 +16,7 @@ vec4 scalarsOf(int quad, inout vec4 weights) {
 
 float sumOf(vec4 weights) { return weights.x + weights.y + weights.z + weights.w; }
 
-SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec3 toEye) {
+SliceValues scalarValuesAt(LevelGeometry level, vec2 position, int slice, vec3 toEye) {
   vec4 weights;
   const int quad = quadAt(level, position, slice, weights);
   const vec4 scalars = scalarsOf(quad, weights);
@@ -38,8 +38,8 @@ SliceValues scalarValuesAt(Slices level, vec2 position, int slice, vec3 toEye) {
 }
 
 // The scalar between two slices, `fraction` of the way from the first to the second, at a position on the sides, and the coverage by voxels
-// with data. Slices beyond the volume have no data.
-vec2 scalarBetween(Slices level, vec2 position, int first, int second, float fraction) {
+// with data. LevelGeometry beyond the volume have no data.
+vec2 scalarBetween(LevelGeometry level, vec2 position, int first, int second, float fraction) {
   vec2 sum = vec2(0.0);
   [[unroll]] for (int i = 0; i < 2; ++i) {
     const int slice = i == 0 ? first : second;
@@ -52,14 +52,14 @@ vec2 scalarBetween(Slices level, vec2 position, int first, int second, float fra
 }
 
 // The same at a position in index space.
-vec2 scalarNear(Slices level, vec3 position) {
+vec2 scalarNear(LevelGeometry level, vec3 position) {
   const int low = int(floor(position[kAxis]));
   return scalarBetween(level, vec2(position[kSideA], position[kSideB]), low, low + 1, position[kAxis] - float(low));
 }
 
 // Adds to the depths towards lights, which are known from a layer further on, the depths up to there. Where
 // little is visible, the extinction is taken as constant on this path.
-void addLayerTowards(inout vec4 depths, Slices level, SliceValues at, vec3 position, bool shows) {
+void addLayerTowards(inout vec4 depths, LevelGeometry level, SliceValues at, vec3 position, bool shows) {
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
     vec3 toLight = frame.lights[i].across;
@@ -84,7 +84,7 @@ void addLayerTowards(inout vec4 depths, Slices level, SliceValues at, vec3 posit
 
 // Finds the light that reaches the ends of a stretch. The first end has its own already if another stretch ended there. The loop is as in
 // findGradients().
-void findLight(inout SliceValues last, inout SliceValues found, Slices level, Ray ray, int slice, bool shows) {
+void findLight(inout SliceValues last, inout SliceValues found, LevelGeometry level, Ray ray, int slice, bool shows) {
   const int before = slice - int(ray.direction);
   const bool enters = before < 0 || before >= level.count, leaves = slice < 0 || slice >= level.count;
   bool first = !last.hasLight && !enters, again, begun = false;
@@ -128,7 +128,7 @@ void endsOf(out SliceValues first, out SliceValues second, SliceValues last, Sli
 
 // Lights the two halves of a stretch. `shown` is the stretch's share of the pixel's alpha.
 void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout SliceValues last, inout SliceValues found, float nearExtinction,
-                  float farExtinction, float shown, Slices level, Ray ray, int slice) {
+                  float farExtinction, float shown, LevelGeometry level, Ray ray, int slice) {
   nearLit.position = farLit.position = voxelPosition(ray, float(slice) - 0.5 * ray.direction);
   vec3 outwards = vec3(0.0);
   bool shows = shown > kMinShaded;
@@ -166,7 +166,7 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
 // The stretch from the previous slice to this one. Scalars change linearly from a slice to the middle of the stretch and on to the next
 // slice, so that integrals of the transfer function give the means. In the middle the scalar is interpolated between all eight voxels around.
 // A slice that is not `within` the level's slices has no data.
-Stretch scalarStretch(SliceValues last, Slices level, Ray ray, int slice, bool within) {
+Stretch scalarStretch(SliceValues last, LevelGeometry level, Ray ray, int slice, bool within) {
   Stretch stretch;
   stretch.slice = slice;
   const int before = slice - int(ray.direction);
@@ -198,7 +198,7 @@ Stretch scalarStretch(SliceValues last, Slices level, Ray ray, int slice, bool w
   return stretch;
 }
 
-void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, Slices level, Ray ray) {
+void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, LevelGeometry level, Ray ray) {
   SliceValues found = stretch.end, first, second;
   endsOf(first, second, last, found);
   const int slice = stretch.slice;

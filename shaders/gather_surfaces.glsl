@@ -8,7 +8,7 @@ const float kMinShaded = 1.0 / 512.0;  // least share of a pixel for which the n
 const float kOutside = 2.5;            // blocks from a surface at which the light that reaches it is looked up
 
 // The gradient at a position on a slice; beyond the volume that of its border.
-vec3 gradientAt(Slices level, vec2 position, int slice) {
+vec3 gradientAt(LevelGeometry level, vec2 position, int slice) {
   position = clamp(position, vec2(0.0), vec2(level.dimensions - 1));
   ivec2 low;
   const vec2 a = sideWeights(position.x, level.dimensions.x, low.x);
@@ -32,7 +32,7 @@ vec3 gradientAt(Slices level, vec2 position, int slice) {
 // Finds the gradients at the ends of a stretch. The first end has its own already if another stretch ended there. What the loop's body
 // assigns is the same if a lane that has left repeats it, which is faster here than an `if` around it; but loads from addresses (kPieces)
 // would then return 0, so that all lanes stay for both ends.
-void findGradients(inout SliceValues last, inout SliceValues found, Slices level, Ray ray, int slice) {
+void findGradients(inout SliceValues last, inout SliceValues found, LevelGeometry level, Ray ray, int slice) {
   bool first = !last.hasGradient, again, begun = false;
   do {
     const int at = clamp(first ? slice - int(ray.direction) : slice, 0, level.count - 1);
@@ -67,7 +67,7 @@ struct Outside {
   vec3 offset;  // from the surface, voxels
 };
 
-Outside outsideOf(Slices level, Ray ray, float slice, vec3 outwards) {
+Outside outsideOf(LevelGeometry level, Ray ray, float slice, vec3 outwards) {
   // Less on rays that move by more than a block a slice, so that the place is in the bricks, which reach a cell beyond occupied ones.
   const float outside = kOutside - 0.5 * max(max(abs(ray.slope.x), abs(ray.slope.y)) - 1.0, 0.0);
   const vec3 offset = outside * outwards * inversesqrt(max(dot(outwards, outwards), 1e-30));

@@ -23,35 +23,38 @@ layout(binding = 0) uniform samplerBuffer extinction;  // extinction of the slab
 layout(scalar, binding = 1) buffer Carried { float carried[]; };  // depth between slabs, by ray
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
-// `plane` is counted from the first of the face.
-float interpolated(int plane, vec2 position) {
-  // Beyond the volume the border of one voxel is 0, and so is everything farther out.
+// The first of the four voxels around a position on a plane, which is counted from the first of the face; `weights` are those of the
+// others along the two sides. Beyond the volume the border of one voxel is 0, and so is everything farther out.
+int firstAround(int plane, vec2 position, out vec2 weights) {
   const vec2 near = clamp(position, vec2(-1.0), vec2(push.sides));
   const vec2 low = min(floor(near), vec2(push.sides - 1));
-  const vec2 w = near - low;
+  weights = near - low;
+  return push.slab.origin + plane * push.slab.planeStride + int(low.x) * push.slab.strideA + int(low.y) * push.slab.strideB;
+}
+
+float interpolated(int plane, vec2 position) {
+  vec2 w;
+  const int first = firstAround(plane, position, w);
   const int a = push.slab.strideA, b = push.slab.strideB;
-  const int first = push.slab.origin + plane * push.slab.planeStride + int(low.x) * a + int(low.y) * b;
   return mix(mix(texelFetch(extinction, first).x, texelFetch(extinction, first + a).x, w.x),
              mix(texelFetch(extinction, first + b).x, texelFetch(extinction, first + a + b).x, w.x), w.y);
 }
 
 // The scalar of a ray on a plane.
-struct Found {
+struct PlaneScalar {
   float coverage, scalar;
   vec4 integral, medium;
 };
 
-Found scalarAt(int plane, vec2 position) {
-  const vec2 near = clamp(position, vec2(-1.0), vec2(push.sides));
-  const vec2 low = min(floor(near), vec2(push.sides - 1));
-  const vec2 w = near - low;
+PlaneScalar scalarAt(int plane, vec2 position) {
+  vec2 w;
+  const int first = firstAround(plane, position, w);
   const int a = push.slab.strideA, b = push.slab.strideB;
-  const int first = push.slab.origin + plane * push.slab.planeStride + int(low.x) * a + int(low.y) * b;
   const vec4 scalars = vec4(texelFetch(extinction, first).x, texelFetch(extinction, first + a).x,
                             texelFetch(extinction, first + b).x, texelFetch(extinction, first + a + b).x);
   vec4 weights = vec4((1.0 - w.x) * (1.0 - w.y), w.x * (1.0 - w.y), (1.0 - w.x) * w.y, w.x * w.y);
   weights *= vec4(greaterThanEqual(scalars, vec4(0.0)));
-  Found found;
+  PlaneScalar found;
   found.coverage = weights.x + weights.y + weights.z + weights.w;
   found.scalar = max(dot(weights, scalars) / max(found.coverage, 1e-20), 0.0);
   tableAt(found.scalar, found.integral, found.medium);
@@ -59,14 +62,14 @@ Found scalarAt(int plane, vec2 position) {
 }
 
 // The mean extinction between two planes.
-float meanOf(Found before, Found after) {
+float meanOf(PlaneScalar before, PlaneScalar after) {
   if (before.coverage == 0.0) before = after;
   if (after.coverage == 0.0) after = before;
   return 0.5 * (before.coverage + after.coverage) *
          meanBetween(before.scalar, before.integral, before.medium, after.scalar, after.integral, after.medium).a;
 }
 
-// Number of layers that a ray crosses before the first plane.
+// Number of layers, at most one, between the source and the first plane.
 float layersToFirst() {
   const FaceRays fan = push.fan;
   return fan.convergence == 0.0 ? 1.0 : min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
@@ -90,9 +93,8 @@ ivec2 planesWithin(vec2 atFirst, vec2 perPlane) {
 // For a ray that starts inside the volume, the path in front of its first layer, in layers: the extinction
 // along it is linear between the planes on both sides of the source. Negative if the source is in that layer.
 float sourceCut(vec2 atFirst, vec2 perPlane) {
-  const FaceRays fan = push.fan;
-  if (fan.convergence == 0.0) return 0.0;
-  const float distance = min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
+  if (push.fan.convergence == 0.0) return 0.0;
+  const float distance = layersToFirst();
   const float first = interpolated(0, atFirst);
   const float before = interpolated(-1, atFirst - perPlane);
   return 0.5 * (distance * (mix(first, before, distance) + first) - first);
@@ -125,7 +127,7 @@ void main() {
   else if (planes.x == 0 && !kScalars)
     depth = layer * sourceCut(atFirst, perPlane);
   if (kBetween && planes.x / 2 >= begin) depth += carried[ray];
-  Found last;
+  PlaneScalar last;
   if (kScalars) last = scalarAt(2 * pair - 1, atFirst + perPlane * float(2 * pair - 1));
   // Lavapipe executes the body of a loop that ends with its condition once less. For rays that have left, it repeats their last pair, from the
   // same values (gather_march.glsl).
@@ -134,7 +136,7 @@ void main() {
     [[unroll]] for (int i = 0; i < 2; ++i) {
       const int plane = 2 * pair + i;
       if (kScalars) {
-        const Found found = scalarAt(plane, atFirst + perPlane * float(plane));
+        const PlaneScalar found = scalarAt(plane, atFirst + perPlane * float(plane));
         depth += layer * (plane == 0 ? layersToFirst() : 1.0) * meanOf(last, found);
         last = found;
       }

@@ -6,7 +6,7 @@ namespace freevoxels {
 
 void BackgroundWriter::start(std::function<void()> write) {
   finish();
-  running_ = std::async([write = std::move(write)] {
+  running_ = std::async(std::launch::async, [write = std::move(write)] {
     std::vector<StageTime> times;
     {
       const StageTimer timer(times, "write images");

@@ -40,11 +40,12 @@ std::uint64_t limitBytes(std::optional<int> mebibytes) {
 }  // namespace
 
 std::unique_ptr<Device> DeviceOptions::open(const Instance& instance, std::span<const char* const> extensions) const {
-  return std::make_unique<Device>(instance, selector.value_or(""), limitBytes(memoryLimit), extensions, cacheFolder());
+  return std::make_unique<Device>(instance, selector.value_or(""), DeviceLimits{.memory = limitBytes(memoryLimit)}, extensions,
+                                  cacheFolder());
 }
 
 std::unique_ptr<Device> DeviceOptions::adopt(const Instance& instance, const AdoptedDevice& adopted) const {
-  return std::make_unique<Device>(instance, adopted, limitBytes(memoryLimit), cacheFolder());
+  return std::make_unique<Device>(instance, adopted, DeviceLimits{.memory = limitBytes(memoryLimit)}, cacheFolder());
 }
 
 bool validationRequested() {

@@ -92,7 +92,7 @@ void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
   }
   writer_.finish();
   if (failed > 0) fail(ErrorKind::Input, "{} of {} volumes could not be drawn, for the reasons above", failed, film_->inputs().size());
-  if (!waiting_.empty()) fail(ErrorKind::Input, "no frame of {} holds anything to draw", progress_.frames());
+  if (!emptyFramesToWrite_.empty()) fail(ErrorKind::Input, "no frame of {} holds anything to draw", progress_.frames());
 }
 
 /// Chooses the view of all frames, where the film decides it.
@@ -194,7 +194,7 @@ void FrameSeries::agree(const Scene& view, const VolumeSource& source, const Fra
 void FrameSeries::agreeOnCubes(Renderer& renderer, const FrameSettings& settings) {
   if (!options_.drawsShares() || options_.shares.coloredParts) return;
   const std::uint64_t fits = renderer.surelyFits(settings) ? 1 : 0;
-  if ((options_.group != nullptr ? options_.group->least(fits) : fits) == 0) renderer.drawInCubes();
+  if ((options_.group != nullptr ? options_.group->least(fits) : fits) == 0) renderer.requireCubes();
 }
 
 void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs) {
@@ -218,18 +218,18 @@ void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::sp
                isTransparent(renderer), scene, jobs[i]);
     addTimes(report_.stages, renderer.frameTimings());
   }
-  finishAddingUp();
+  finishReduction();
   report(renderer, *scene.volume);
-  for (const FrameJob* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
+  for (const FrameJob* empty : std::exchange(emptyFramesToWrite_, {})) writeEmpty(*empty);
 }
 
 /// What ends the rays of a frame; null if nothing does. Neighbouring frames of one image read it once.
 const std::shared_ptr<const Holdout>& FrameSeries::holdoutOf(const FrameJob& job) {
-  if (job.holdout == heldOutBy_) return holdout_;
+  if (job.holdout == holdoutFile_) return holdout_;
   CameraDescription camera = options_.scene.description.camera;
   camera.holdout = job.holdout;
   holdout_ = camera.readHoldout();
-  heldOutBy_ = job.holdout;
+  holdoutFile_ = job.holdout;
   return holdout_;
 }
 
@@ -240,13 +240,14 @@ void FrameSeries::drawShares(Renderer& renderer, const Scene& view, const FrameS
   FixedSums sums = coloredParts ? drawColoredParts(renderer, view.camera, settings, *coloredParts, progress_.progress())
                                 : renderer.renderShares(view.camera, settings, part, progress_.progress());
   if (options_.group != nullptr) {
-    finishAddingUp();
-    addingUp_ = {&job, view, isTransparent(renderer), std::async([group = options_.group, sums = std::move(sums)]() mutable {
-                   AddedUp result;
-                   const StageTimer timer(result.times, "add up sums");
-                   if (group->addUp(sums)) result.sums = std::move(sums);
-                   return result;
-                 })};
+    finishReduction();
+    pending_ = {&job, view, isTransparent(renderer),
+                std::async(std::launch::async, [group = options_.group, sums = std::move(sums)]() mutable {
+                  ReducedSums result;
+                  const StageTimer timer(result.times, "add up sums");
+                  if (group->addUp(sums)) result.sums = std::move(sums);
+                  return result;
+                })};
   } else if (options_.shares.sums) {
     const StageTimer timer(report_.stages, "write images");
     writer_.writeSums(sums, view, job);
@@ -256,12 +257,12 @@ void FrameSeries::drawShares(Renderer& renderer, const Scene& view, const FrameS
 }
 
 /// Waits for the sums of the group's last frame, and writes its image where they are.
-void FrameSeries::finishAddingUp() {
-  if (!addingUp_.result.valid()) return;
-  const AddedUp added = addingUp_.result.get();
+void FrameSeries::finishReduction() {
+  if (!pending_.result.valid()) return;
+  const ReducedSums added = pending_.result.get();
   addTimes(report_.stages, added.times);
   if (!added.sums) return;
-  complete(resolveSums(*added.sums, options_.frameSettings().isNormalised()), addingUp_.isTransparent, addingUp_.view, *addingUp_.job);
+  complete(resolveSums(*added.sums, options_.frameSettings().isNormalised()), pending_.isTransparent, pending_.view, *pending_.job);
 }
 
 void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job) {
@@ -274,7 +275,7 @@ void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, c
 
 void FrameSeries::writeEmpty(const FrameJob& job) {
   if (!film_->reference()) {
-    waiting_.push_back(&job);
+    emptyFramesToWrite_.push_back(&job);
     return;
   }
   ++progress_.drawn;

@@ -18,6 +18,7 @@
 
 namespace freevoxels {
 
+/// Draws frames, of one volume or of the files of a film, and writes their images while the next ones are drawn. Used by one thread.
 class FrameSeries {
  public:
   /// All must outlive this object; `report` is filled by `draw`.
@@ -37,16 +38,16 @@ class FrameSeries {
     std::vector<Camera> cameras;
     FrameSettings settings;
   };
-  struct AddedUp {
+  struct ReducedSums {
     std::optional<FixedSums> sums;  ///< on the process that writes the frame
     std::vector<StageTime> times;
   };
   /// The sums of the group's last frame, which are added up while the next one is drawn.
-  struct AddingUp {
+  struct PendingReduction {
     const FrameJob* job = nullptr;
     Scene view;
     bool isTransparent = false;  ///< whether nothing of the volume has extinction or emission
-    std::future<AddedUp> result;
+    std::future<ReducedSums> result;
   };
 
   bool needsNoVolume(std::span<const FrameJob> jobs) const;
@@ -62,7 +63,7 @@ class FrameSeries {
   void agree(const Scene& view, const VolumeSource& source, const FrameJob& job);
   void agreeOnCubes(Renderer& renderer, const FrameSettings& settings);
 
-  void finishAddingUp();
+  void finishReduction();
   void complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job);
   void writeEmpty(const FrameJob& job);
   void report(const Renderer& renderer, const Volume& volume);
@@ -73,11 +74,11 @@ class FrameSeries {
   SeriesProgress progress_;
   std::optional<FilmScenes> film_;  ///< of the frames of draw()
   FrameWriter writer_;
-  std::optional<std::string> heldOutBy_;    ///< FrameJob::holdout of the last frame
+  std::optional<std::string> holdoutFile_;  ///< FrameJob::holdout of the last frame
   std::shared_ptr<const Holdout> holdout_;  ///< what was read of it
-  AddingUp addingUp_;
+  PendingReduction pending_;
   std::vector<const FrameJob*> drawnElsewhere_;  ///< frames of other processes of the group
-  std::vector<const FrameJob*> waiting_;         ///< empty frames before any frame that says how they are seen
+  std::vector<const FrameJob*> emptyFramesToWrite_;  ///< empty frames before any frame that says how they are seen
 };
 
 }  // namespace freevoxels

@@ -19,7 +19,7 @@ inline constexpr std::string_view kStandardOutput = "-";
 /// Whether an image is written there, so that nothing else may be.
 bool usesStandardOutput(std::span<const std::string> files);
 
-/// By extension, in any case.
+/// Whether the name of a file has the extension of a format, in upper or lower case.
 bool isExr(const std::string& file);
 bool isPng(const std::string& file);
 bool isJpeg(const std::string& file);

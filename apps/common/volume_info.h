@@ -25,7 +25,8 @@ std::shared_ptr<const fvx::FvxFile> checkedBaked(const InputDescription& input, 
 
 /// Whether a grid can be drawn, and may be on a device as a whole: its voxels can be numbered.
 bool canBeWhole(const GridInfo& grid);
-/// Of a grid that may be on a device as a whole. Memory without voxel colours; of the whole box if the occupied blocks were not counted.
+/// The memory of a grid that may be on a device as a whole, without voxel colours; of the whole box if the occupied blocks were not
+/// counted.
 VolumeMemory memoryOf(const GridInfo& grid, DirectionSet directions);
 /// Bytes stored for each occupied voxel with 26 directions.
 double bytesPerVoxel(const GridInfo& grid);

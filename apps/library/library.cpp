@@ -34,8 +34,12 @@ freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> di
   const KeywordOptions options({parseJson("scene", "of the values", scene)}, {"classification"});
   const std::optional<Labels>& labels = options.scene.classification.labels;
   const std::vector<ChannelStyle>& channels = options.scene.classification.channels;
-  const std::size_t voxels = std::size_t(std::max(x, 0)) * std::size_t(std::max(y, 0)) * std::size_t(std::max(z, 0));
-  if (std::min({x, y, z}) < 1 || values.size() % voxels != 0 || (values.size() != voxels && channels.empty()))
+  const std::size_t count = values.size();
+  // Divided rather than multiplied, as the product of three edges may exceed 64 bits.
+  const bool fits = std::min({x, y, z}) >= 1 && std::size_t(x) <= count && std::size_t(y) <= count / std::size_t(x) &&
+                    std::size_t(z) <= count / std::size_t(x) / std::size_t(y);
+  const std::size_t voxels = fits ? std::size_t(x) * std::size_t(y) * std::size_t(z) : 0;
+  if (!fits || count % voxels != 0 || (count != voxels && channels.empty()))
     fail(freevoxels::ErrorKind::Input, "{} values are not a box of {} x {} x {} voxels", values.size(), x, y, z);
   const auto vector = [](const std::array<double, 3>& v) { return glm::dvec3(v[0], v[1], v[2]); };
   const glm::ivec3 size(x, y, z);
@@ -44,7 +48,7 @@ freevoxels::Volume volumeOf(std::span<const float> values, std::array<int, 3> di
     return volumeOfScalars(bricksOf(values, size), transform, std::nullopt, "the array", labels && !labels->isNone() ? &*labels : nullptr);
   std::vector<ScalarBricks> ofChannels;
   for (const ChannelStyle& channel : channels)
-    ofChannels.push_back(bricksOf(values.subspan(channelNumber(channel, values.size() / voxels) * voxels, voxels), size));
+    ofChannels.push_back(bricksOf(values.subspan(channelNumber(channel, count / voxels) * voxels, voxels), size));
   return volumeOfChannels(std::move(ofChannels), transform, channels);
 }
 

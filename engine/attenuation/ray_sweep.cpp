@@ -94,8 +94,7 @@ void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostByte
   const std::uint64_t fits = std::min(std::uint64_t(device.maximumAllocation()), mostBytes);
   if (room.bytes() > mostBytes || room.depths > fits || room.largest > most)
     fail(ErrorKind::OutOfMemory,
-         "exact transmittance needs {} MiB for its rays from here and {} has {} MiB in one piece: use "
-         "{}, or a smaller volume",
+         "exact transmittance needs {} MiB of device memory for its rays, and {} can allocate {} MiB at once: use {}, or a smaller volume",
          room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20, Parameter("light-attenuation", "table"));
 }
 
@@ -128,21 +127,15 @@ void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source) {
   const RayRoom room = roomFor(faceRays(dimensions, source), dimensions);
   const std::uint64_t own = depths_.bytes() + slab_.bytes() + carried_.bytes();
   checkFits(device_, room, device_.availableBytes() + own);
-  const auto grow = [&](Buffer& buffer, std::uint64_t bytes, const char* name, VkBufferUsageFlags usage = 0) {
-    if (buffer.bytes() >= bytes) return false;
-    buffer = {};  // free the old buffer before allocating the new one
-    buffer = Buffer(device_, bytes, MemoryUse::Device, name, usage);
-    return true;
-  };
-  if (grow(depths_, room.depths, "ray depths", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT)) {
+  if (growBuffer(device_, depths_, room.depths, "ray depths", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT)) {
     depthTexels_.reset();
     // Shaders find texels by 32 bits of the addresses.
     if (room.depths / sizeof(std::uint32_t) <= device_.limits().maxTexelBufferElements &&
         room.depths <= std::numeric_limits<std::uint32_t>::max())
       depthTexels_.emplace(device_, depths_, VK_FORMAT_R32_UINT);
   }
-  grow(carried_, room.carried, "ray depths between slabs");
-  if (grow(slab_, room.slab, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
+  growBuffer(device_, carried_, room.carried, "ray depths between slabs");
+  if (growBuffer(device_, slab_, room.slab, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
     slabTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_SFLOAT);
 }
 
@@ -153,7 +146,7 @@ void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm
       .first = first, .extent = quads, .dimensions = volume.layout.dimensions, .scalars = volume.scalarBricks->onDevice()};
   const std::array<Binding, 1> bindings{&slab_};
   commands.dispatch(expandScalars_, bindings, push, quads);
-  commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+  commands.barrier(kComputeStage, kComputeStage);
 }
 
 void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
@@ -185,7 +178,7 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const F
                                              .strideB = strides[sideB]}};
     const std::array<Binding, 3> bindings{&slabTexels_, &carried_, scalars ? &volume.scalarBricks->tableTexels : &slabTexels_};
     commands.dispatchLinear(pipelines_[scalars ? 1 : 0], bindings, push, fan.rays());
-    commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+    commands.barrier(kComputeStage, kComputeStage);
   }
 }
 

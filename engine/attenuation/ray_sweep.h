@@ -1,5 +1,6 @@
 #pragma once
-// Optical depths along the rays of a source, on the device, with a thread for each ray. The volume is first
+// Optical depths along the rays of a source, on the device, with a thread for each ray: Subr et al. 2007, Eq. 5, along rays that enter
+// the volume through its faces, each face with a fan of them, instead of along lattice lines (Section 4.3). The volume is first
 // expanded to a dense grid, a slab of planes at a time: finding a voxel's rank takes several times as long as
 // reading its extinction, and four rays share each voxel.
 
@@ -14,7 +15,7 @@
 
 namespace freevoxels {
 
-/// A face's rays as shaders have them, with the device address of their depths.
+/// A fan, the rays that enter through one face, as shaders have it, with the device address of their depths.
 shader::FaceRays deviceFan(const FaceRays& fan, VkDeviceAddress depths);
 
 /// Bytes of device memory for the rays of a source.

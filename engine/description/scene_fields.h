@@ -68,7 +68,7 @@ struct SceneField {
   bool isOrExcludes(const SceneField& other) const;
 };
 
-/// By sections, in the order of SceneDescription.
+/// All fields by sections, in the order of SceneDescription.
 const std::vector<SceneField>& sceneFields();
 /// The field of this name.
 const SceneField& sceneField(std::string_view name);

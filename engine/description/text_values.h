@@ -48,7 +48,7 @@ bool isInlineJson(const std::string& text);
 inline constexpr const char* kWindowForm = "CENTER,WIDTH|LO..HI";
 /// A window of values, by its middle and width, or by its ends.
 ValueWindow readWindow(const std::string& name, const std::string& text);
-/// By its ends.
+/// The text of a window, as LO..HI.
 std::string windowText(const ValueWindow& window);
 
 /// The shortest text that is read as the same number.

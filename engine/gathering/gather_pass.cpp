@@ -1,7 +1,7 @@
 #include "engine/gathering/gather_pass.h"
 
 #include <algorithm>
-#include <cstring>
+#include <array>
 #include <limits>
 #include <span>
 #include <utility>
@@ -33,17 +33,18 @@
 #include "embedded/gather_roughness.h"
 #include "embedded/gather_stencil.h"
 #include "engine/core/error.h"
+#include "engine/core/parameter.h"
 #include "engine/vulkan/commands.h"
 
 namespace freevoxels {
 
 namespace {
 
-const Shader& gatherShader(const GatherVolume& volume, bool isProjected, GatherPass::Case which) {
+const Shader& gatherShader(const GatherVolume& volume, bool isProjected, GatherPass::Variant variant) {
   using namespace shaders;
   if (isProjected) {
     FV_CHECK_EQ(volume.hasScalars() && !volume.isSampled(), true);
-    return which == GatherPass::Case::Cube ? gather_projected_cube : gather_projected_whole;
+    return variant == GatherPass::Variant::Cube ? gather_projected_cube : gather_projected_whole;
   }
   static constexpr std::array<std::array<std::array<const Shader*, 3>, 3>, 2> kShaders{{
       {{{&gather_pre_unlit, &gather_pre_unlit_cube, &gather_pre_unlit_merged},
@@ -53,7 +54,7 @@ const Shader& gatherShader(const GatherVolume& volume, bool isProjected, GatherP
         {&gather_post_lit, &gather_post_lit_cube, &gather_post_lit_merged},
         {&gather_post_surfaces, &gather_post_surfaces_cube, &gather_post_surfaces_merged}}},
   }};
-  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][std::size_t(which)];
+  return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][std::size_t(variant)];
 }
 
 Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, bool holdout, const Shader& shader) {
@@ -79,11 +80,14 @@ GatherPass::GatherPass(const Device& device)
 void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout,
                               bool isProjected) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, holdout, gatherShader(volume, isProjected, Case::Whole));
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, holdout, gatherShader(volume, isProjected, Variant::Whole));
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
   if (sums.colorEnergy.bytes() >= samples * sizeof(glm::vec4)) return;
+  if (samples > device_.limits().maxTexelBufferElements)
+    fail(ErrorKind::OutOfMemory, "the image needs {} samples, and {} can address {} at once: use a smaller {}", samples,
+         device_.description().name, device_.limits().maxTexelBufferElements, Parameter("size"));
   constexpr VkBufferUsageFlags kUsage =
       VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT;
   sums = {};  // free the old buffers before allocating the new ones
@@ -122,9 +126,9 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
   commands.update(frame_, frame);
 }
 
-std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int axis, const Dispatch& how) const {
+std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int axis, const Dispatch& target) const {
   const GatherVolume::Quads& quads = volume.quads(axis);
-  std::vector<Binding> bindings{how.frame,           &volume.brickNumbers(),       &quads.medium.texels,      &quads.source.texels,
+  std::vector<Binding> bindings{target.frame,        &volume.brickNumbers(),       &quads.medium.texels,      &quads.source.texels,
                                 &quads.extra.texels, &gathered_.colorEnergyTexels, &gathered_.distanceTexels, &volume.transferTable(),
                                 &volume.skips()};
   for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
@@ -133,31 +137,31 @@ std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int 
   return bindings;
 }
 
-void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Dispatch& how,
+void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Dispatch& target,
                           const shader::SamplesPush& samples) const {
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, frame.raysOfPixel > 0,
-                                         gatherShader(volume, frame.projection != 0, how.which));
-    const std::vector<Binding> bindings = gatherBindings(volume, axis, how);
-    if (how.arguments != nullptr)
-      commands.dispatchIndirect(pipeline, bindings, samples, *how.arguments, how.offset, how.mostGroups);
+                                         gatherShader(volume, frame.projection != 0, target.variant));
+    const std::vector<Binding> bindings = gatherBindings(volume, axis, target);
+    if (target.arguments != nullptr)
+      commands.dispatchIndirect(pipeline, bindings, samples, *target.arguments, target.offset, target.mostGroups);
     else
-      commands.dispatch(pipeline, bindings, samples, glm::ivec3(how.threads, 1));
+      commands.dispatch(pipeline, bindings, samples, glm::ivec3(target.threads, 1));
   }
 }
 
 void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent,
-                                 Case which, const shader::SamplesPush& samples) {
+                                 Variant variant, const shader::SamplesPush& samples) {
   if (samples.step != 0) {
-    dispatch(commands, volume, frame, {.which = which, .frame = &frame_, .threads = extent}, samples);
+    dispatch(commands, volume, frame, {.variant = variant, .frame = &frame_, .threads = extent}, samples);
     return;
   }
   shader::SamplesPush range = samples;
   for (int i = 0; i < shader::kSampleRanges; ++i) {
     range.firstRow = i * samples.rowsOfARange;
     dispatch(commands, volume, frame,
-             {.which = which,
+             {.variant = variant,
               .frame = &frame_,
               .arguments = &adaptive_.list,
               .offset = std::uint64_t(i) * sizeof(shader::DispatchSize),
@@ -168,7 +172,7 @@ void GatherPass::dispatchSamples(Commands& commands, const GatherVolume& volume,
 
 void GatherPass::recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
   recordSamples(commands, frame, [&](Commands& recording, glm::ivec2 extent, const shader::SamplesPush& samples) {
-    dispatchSamples(recording, volume, frame, extent, Case::Whole, samples);
+    dispatchSamples(recording, volume, frame, extent, Variant::Whole, samples);
   });
 }
 
@@ -234,30 +238,9 @@ shader::SamplesPush GatherPass::recordList(Commands& commands, glm::ivec2 coarse
   return push;
 }
 
-void GatherPass::recordListed(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
-                              std::span<const std::uint32_t> places) {
-  constexpr std::size_t kGroup = shader::kGatherTile * shader::kGatherTile;
-  shader::SampleListHead head{.ranges = {}, .count = std::uint32_t(places.size())};
-  head.ranges[0] = {.x = 1, .y = std::uint32_t((places.size() + kGroup - 1) / kGroup), .z = 1};
-  FV_CHECK_LE(head.ranges[0].y, device_.limits().maxComputeWorkGroupCount[1]);
-  for (int i = 1; i < shader::kSampleRanges; ++i) head.ranges[i] = {.x = 1, .y = 0, .z = 1};
-  adaptive_ = {};
-  adaptive_.list = Buffer(device_, sizeof(head) + places.size_bytes(), MemoryUse::Upload, "listed samples", VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
-  std::memcpy(adaptive_.list.mapped(), &head, sizeof(head));
-  std::memcpy(adaptive_.list.mapped() + sizeof(head), places.data(), places.size_bytes());
-  dispatchSamples(commands, volume, frame, glm::ivec2(0), Case::Whole,
-                  {.list = addressWords(adaptive_.list.address()), .step = 0, .groupsOfARow = 1, .rowsOfARange = int(head.ranges[0].y)});
-  commands.barrier(kComputeStage, kComputeStage);
-}
-
 void GatherPass::recordClear(Commands& commands, const shader::GatherFrame& frame) {
   setLattice(frame);
   makeRoom(gathered_, latticeSize(frame));
-  recordClear(commands);
-}
-
-void GatherPass::recordClear(Commands& commands) {
-  if (gathered_.colorEnergy.bytes() == 0) return;
   commands.clear(gathered_.colorEnergy);
   commands.clear(gathered_.distances);
 }
@@ -265,7 +248,7 @@ void GatherPass::recordClear(Commands& commands) {
 void GatherPass::recordCube(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame) {
   commands.beginPass("gather");
   begin(commands, frame);
-  dispatchSamples(commands, volume, frame, frame.cube.extent, Case::Cube);
+  dispatchSamples(commands, volume, frame, frame.cube.extent, Variant::Cube);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -296,15 +279,15 @@ void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame&
   }
 }
 
-void GatherPass::record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
-                        const FrameTargets& targets) {
-  begin(commands, frame);
+void GatherPass::record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const FrameTargets& targets) {
   commands.beginPass("gather");
+  begin(commands, frame);
   recordSamples(commands, volume, frame);
   recordPixels(commands, frame, volume.hasScalars(), targets);
 }
 
 void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
+  commands.beginPass("gather image");
   begin(commands, frame);
   recordPixels(commands, frame, scalars, targets);
 }
@@ -324,18 +307,22 @@ void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& fra
   commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 
-std::vector<GatherSums> GatherPass::download(const Sums& sums) const {
-  const auto width = std::size_t(lattice_.samples.x), first = width * std::size_t(seen_.first.y),
-             count = width * std::size_t(seen_.extent.y);
+/// Sums outside of what was seen are not stored, and 0.
+std::vector<GatherSums> GatherPass::download(const Sums& sums, glm::ivec2 rows) const {
+  const auto width = std::size_t(lattice_.samples.x);
+  std::vector<GatherSums> result(width * std::size_t(rows.y - rows.x));
+  const int begin = std::max(rows.x, seen_.first.y), end = std::min(rows.y, seen_.first.y + seen_.extent.y);
+  if (begin >= end) return result;
+  const std::size_t first = width * std::size_t(begin), count = width * std::size_t(end - begin);
   std::vector<glm::vec4> colorEnergy(count);
   std::vector<float> distances(count);
   freevoxels::download(device_, sums.colorEnergy, std::as_writable_bytes(std::span(colorEnergy)), first * sizeof(glm::vec4));
   freevoxels::download(device_, sums.distances, std::as_writable_bytes(std::span(distances)), first * sizeof(float));
-  std::vector<GatherSums> result(width * std::size_t(lattice_.samples.y));
-  for (int y = 0; y < seen_.extent.y; ++y)
+  for (int y = begin; y < end; ++y)
     for (int x = seen_.first.x; x < seen_.first.x + seen_.extent.x; ++x) {
-      const std::size_t i = std::size_t(x) + std::size_t(y) * width;
-      result[first + i] = {.color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])};
+      const std::size_t i = std::size_t(x) + std::size_t(y - begin) * width;
+      result[std::size_t(x) + std::size_t(y - rows.x) * width] = {
+          .color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])};
     }
   return result;
 }

@@ -6,13 +6,13 @@
 
 #include <functional>
 #include <memory>
-#include <span>
+#include <vector>
 
 #include "engine/gathering/gather_frame.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
 #include "engine/scene/holdout.h"
-#include "engine/splatting/splat_pass.h"
+#include "engine/splatting/frame_targets.h"
 
 namespace freevoxels {
 
@@ -22,50 +22,52 @@ namespace freevoxels {
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
-  /// Has the pipelines that march rays along the given axes compiled. The volume is prepared for the frame. `levels` says whether the frame
+  /// Compiles the pipelines that march rays along the given axes. The volume is prepared for the frame. `levels` says whether the frame
   /// has levels of detail above voxels, `holdout` whether it has one, `isProjected` whether scalars are projected.
   static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout,
                            bool isProjected);
-  /// Uploads the holdout of the next frames, if there is one and it is not that of the last frame. Returns its GatherFrame::holdout.
+  /// Uploads the holdout of the next frames, unless it is null or that of the last frame. Returns its address for GatherFrame::holdout.
   glm::uvec2 holdOut(const std::shared_ptr<const Holdout>& holdout);
+  /// Records all steps of a frame of one volume.
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const FrameTargets& targets);
 
-  /// The steps of record(), for tests that alter what lies between them: begin() allocates the sums and writes the frame that the steps after it read.
-  /// The targets have to be in layout GENERAL.
+  // The steps of record(), for parts of a frame and for tests that alter what lies between them. The targets have to be in layout GENERAL.
+
+  /// Allocates the sums, and writes the frame that the steps after it read.
   void begin(Commands& commands, const shader::GatherFrame& frame);
   void recordSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   /// Marches samples in another way than that of one volume: every `samples.step`-th along both axes, `extent` of them, or with a step of 0
   /// those that are listed.
   using March = std::function<void(Commands&, glm::ivec2 extent, const shader::SamplesPush& samples)>;
   void recordSamples(Commands& commands, const shader::GatherFrame& frame, const March& march);
-  enum class Case { Whole, Cube, Merged };
+  /// What a dispatch marches: a whole volume, a cube of it, or one of several volumes in the same place.
+  enum class Variant { Whole, Cube, Merged };
   /// Where a dispatch gets its frame and its size from.
   struct Dispatch {
-    Case which = Case::Whole;
-    const Buffer* frame;                ///< shader::GatherFrame
+    Variant variant = Variant::Whole;
+    const Buffer* frame = nullptr;      ///< shader::GatherFrame
     glm::ivec2 threads{0};              ///< if it is not indirect
     const Buffer* arguments = nullptr;  ///< of an indirect dispatch
     std::uint64_t offset = 0;           ///< in `arguments`
     std::uint64_t mostGroups = 0;       ///< of an indirect dispatch
   };
   /// One dispatch for each axis along which the volume's rays march.
-  void dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Dispatch& how,
+  void dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Dispatch& target,
                 const shader::SamplesPush& samples) const;
   /// The list of samples that are marched besides coarse ones: shader::SampleListHead and places.
   const Buffer& list() const { return adaptive_.list; }
-  /// Of the last lattice.
+  /// Texels of the sums of the last frame's samples.
   const TexelView& colorEnergyTexels() const { return gathered_.colorEnergyTexels; }
   const TexelView& distanceTexels() const { return gathered_.distanceTexels; }
   const Buffer& frameBuffer() const { return frame_; }
-  /// Instead of all samples, marches those at these places of the lattice (x + y times its width), in this order; for tests.
-  void recordListed(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, std::span<const std::uint32_t> places);
   void recordStencil(Commands& commands, const shader::GatherFrame& frame);
-  /// The sums of a volume that is on the device cube by cube: first recordClear, then recordCube for one after the other, in the order
-  /// in which rays meet them, and with `frame.cube.isLast` for the last one. `frame.cube` is filled in. Then recordImage.
+
+  // A volume that is on the device cube by cube: first recordClear, then recordCube for one after the other, in the order in which rays
+  // meet them, and with `frame.cube.isLast` for the last one. `frame.cube` is filled in. Then recordImage.
+
+  /// Allocates the sums, and sets them to 0.
   void recordClear(Commands& commands, const shader::GatherFrame& frame);
-  /// Sets what there is of an earlier frame's sums to 0, so that validation notices samples that are left out.
-  void recordClear(Commands& commands);
   void recordCube(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame);
   /// The image in `targets`, as record() leaves it; `frame` is that of the whole volume.
   void recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
@@ -73,10 +75,12 @@ class GatherPass {
   /// The image of the gathered samples.
   void recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets);
 
-  /// The lattice and the sums of the last frame; for validation and tests. The downloads wait.
+  /// The sums of some rows of the last frame's lattice, x fastest. Waits.
+  std::vector<GatherSums> downloadRows(glm::ivec2 rows) const { return download(gathered_, rows); }
+  /// The lattice of the last frame, and its sums before and after the stencil; for validation and tests. The downloads wait.
   const GatherLattice& lattice() const { return lattice_; }
-  std::vector<GatherSums> downloadGathered() const { return download(gathered_); }
-  std::vector<GatherSums> downloadSmoothed() const { return download(smoothed_); }
+  std::vector<GatherSums> downloadGathered() const { return download(gathered_, {0, lattice_.samples.y}); }
+  std::vector<GatherSums> downloadSmoothed() const { return download(smoothed_, {0, lattice_.samples.y}); }
 
  private:
   /// C and E (four floats), and the sum of e times distance, of every sample.
@@ -95,10 +99,10 @@ class GatherPass {
   shader::SamplesPush recordList(Commands& commands, glm::ivec2 coarse, glm::ivec2 groups);
   void makeRoom(Sums& sums, std::uint64_t samples);
   /// `extent` is that of the samples that are dispatched, unless they are listed.
-  void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent, Case which,
+  void dispatchSamples(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, glm::ivec2 extent, Variant variant,
                        const shader::SamplesPush& samples = {.step = 1});
-  std::vector<Binding> gatherBindings(const GatherVolume& volume, int axis, const Dispatch& how) const;
-  std::vector<GatherSums> download(const Sums& sums) const;
+  std::vector<Binding> gatherBindings(const GatherVolume& volume, int axis, const Dispatch& target) const;
+  std::vector<GatherSums> download(const Sums& sums, glm::ivec2 rows) const;
   std::vector<Binding> sumBindings(const Sums& from, const Sums& to) const;
 
   const Device& device_;

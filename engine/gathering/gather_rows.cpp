@@ -12,7 +12,7 @@ namespace {
 
 /// A sample adds at most this optical depth: what is behind that is invisible.
 constexpr double kMostDepth = 16.0;
-/// Of which kMostDepth takes 4 more.
+/// Fractional binary digits of the optical depth; its integer part up to kMostDepth takes four more.
 constexpr int kDepthDigits = 55;
 /// Sums of some groups of lights stay within 63 binary digits.
 constexpr int kMostDigits = 60;
@@ -86,7 +86,7 @@ void addSamples(FixedSums& sums, const std::vector<GatherSums>& samples, glm::iv
   for (int y = rows.x; y < rows.y; ++y)
     for (int x = 0; x < sums.extent.x; ++x) {
       const glm::ivec2 place = {sums.first.x + x, y};
-      const GatherSums& sample = samples[std::size_t(place.x) + std::size_t(sums.lattice->samples.x) * std::size_t(place.y)];
+      const GatherSums& sample = samples[std::size_t(place.x) + std::size_t(sums.lattice->samples.x) * std::size_t(y - rows.x)];
       const std::size_t i = std::size_t(x) + std::size_t(sums.extent.x) * std::size_t(y - sums.first.y);
       for (int c = 0; c < 3; ++c) add(SumChannel(c), i, sample.color[c]);
       if (lightAlone) continue;

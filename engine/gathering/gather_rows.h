@@ -24,7 +24,8 @@ shader::GatherFrame frameOfRows(const shader::GatherFrame& frame, glm::ivec2 row
 /// digits.
 FixedSums sumsOfSamples(const shader::GatherFrame& frame, bool scalars, FixedSums layout);
 
-/// Adds the samples of some rows of the whole lattice; `lightAlone` where the same samples were added with other lights.
+/// Adds the samples of some rows of the lattice, which `samples` has alone; `lightAlone` where the same samples were added with other
+/// lights.
 void addSamples(FixedSums& sums, const std::vector<GatherSums>& samples, glm::ivec2 rows, bool lightAlone = false);
 
 }  // namespace freevoxels

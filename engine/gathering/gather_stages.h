@@ -48,7 +48,7 @@ struct GatherLight {
   std::vector<glm::dvec3> gradients;
 };
 
-/// In the order in which they are made.
+/// What the stages of a frame made, in the order in which they are made.
 struct GatherStages {
   GatherLattice lattice;
   std::vector<LevelData> medium;        ///< by level: what the blocks are made of; empty where the frame reads no blocks

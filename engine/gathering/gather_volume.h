@@ -13,7 +13,7 @@
 #include "engine/gathering/gather_stages.h"
 #include "engine/lighting/scattering_solver.h"
 #include "engine/octree/volume_builder.h"
-#include "engine/splatting/splat_pass.h"
+#include "engine/splatting/frame_constants.h"
 #include "engine/volume/coarse_cells.h"
 #include "shaders/gather_interface.h"
 
@@ -82,9 +82,9 @@ class GatherVolume {
     std::uint32_t lightLevels = 0;
     std::uint64_t bytes() const;
   };
-  /// By level, of the levels that the last frame read as blocks; others are empty. For validation and tests. Waits.
+  /// The blocks of each level that the last frame read as blocks; other levels are empty. For validation and tests. Waits.
   std::vector<GatherBlocks> downloadBlocks() const;
-  /// By level, of the levels whose light the last frame read; others are empty. For validation and tests. Waits.
+  /// The light of each level whose light the last frame read; other levels are empty. For validation and tests. Waits.
   std::vector<GatherLight> downloadLight() const;
 
   /// None without such light. Waits.
@@ -119,7 +119,7 @@ class GatherVolume {
   /// Whether light is evaluated at samples.
   bool isSampled() const { return isSampled_; }
   bool hasScattered() const { return isSampled_ && scattered_ != nullptr; }
-  /// With scattered light.
+  /// Texels of the scattered light, where hasScattered().
   const TexelView& scatteredTexels() const { return scattered_->texels(); }
   bool hasFlux() const { return hasScattered() && scattered_->onDevice().moments > 1; }
   /// Whether the extinction of light differs between the colours, or from that of alpha.

@@ -146,20 +146,15 @@ void MergedPass::makeRoom(const shader::GatherFrame& frame) {
 }
 
 void MergedPass::makeRoom(std::uint64_t slots) {
-  const auto make = [&](Buffer& buffer, std::uint64_t bytes, const char* name, VkBufferUsageFlags usage = 0) {
-    if (buffer.bytes() >= bytes) return false;
-    buffer = {};  // free the old buffer before allocating the new one
-    buffer = Buffer(device_, bytes, MemoryUse::Device, name, usage);
-    return true;
-  };
-  make(rays_, slots * sizeof(std::uint32_t), "rays of several volumes");
-  make(counts_, slots * std::uint64_t(volumes_) * sizeof(std::uint32_t), "entries of rays");
-  if (make(entries_, slots * entriesOfSlot() * sizeof(glm::vec4), "slabs", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
+  growBuffer(device_, rays_, slots * sizeof(std::uint32_t), "rays of several volumes");
+  growBuffer(device_, counts_, slots * std::uint64_t(volumes_) * sizeof(std::uint32_t), "entries of rays");
+  if (growBuffer(device_, entries_, slots * entriesOfSlot() * sizeof(glm::vec4), "slabs", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
     entryTexels_ = TexelView(device_, entries_);
-  if (tinted_) make(depths_, slots * entriesOfSlot() * sizeof(glm::vec4), "optical depths of slabs");
+  if (tinted_) growBuffer(device_, depths_, slots * entriesOfSlot() * sizeof(glm::vec4), "optical depths of slabs");
 }
 
-void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch how, const shader::SamplesPush& samples) {
+void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch target,
+                           const shader::SamplesPush& samples) {
   shader::SamplesPush push = samples;
   push.merge = addressWords(merge_.address());
   push.rays = addressWords(rays_.address());
@@ -169,19 +164,19 @@ void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, Gath
   push.depths = addressWords(depths_.bytes() > 0 ? depths_.address() : 0);
   const Buffer& frame = pass_.frameBuffer();
   const auto dispatch = [&](const Pipeline& pipeline, std::span<const Binding> bindings) {
-    if (how.arguments != nullptr)
-      commands.dispatchIndirect(pipeline, bindings, push, *how.arguments, how.offset, how.mostGroups);
+    if (target.arguments != nullptr)
+      commands.dispatchIndirect(pipeline, bindings, push, *target.arguments, target.offset, target.mostGroups);
     else
-      commands.dispatch(pipeline, bindings, push, glm::ivec3(how.threads, 1));
+      commands.dispatch(pipeline, bindings, push, glm::ivec3(target.threads, 1));
     commands.barrier(kComputeStage, kComputeStage);
   };
   dispatch(makeComputePipeline(device_, shaders::merge_rays, {}), std::array<Binding, 1>{&frame});
   for (std::size_t i = 0; i < parts.size(); ++i) {
     push.volume = int(i);
-    how.frame = &frames_[i];
-    for (const GatherPass::Case which : {GatherPass::Case::Whole, GatherPass::Case::Merged}) {
-      how.which = which;
-      pass_.dispatch(commands, *parts[i].volume, parts[i].frame, how, push);
+    target.frame = &frames_[i];
+    for (const GatherPass::Variant variant : {GatherPass::Variant::Whole, GatherPass::Variant::Merged}) {
+      target.variant = variant;
+      pass_.dispatch(commands, *parts[i].volume, parts[i].frame, target, push);
     }
   }
   commands.barrier(kComputeStage, kComputeStage);
@@ -202,14 +197,14 @@ void MergedPass::march(Commands& commands, std::span<const Part> parts, glm::ive
     push.columns = columns;
     push.slots = columns * inBand;
     const int count = std::min(inBand, rows - first);
-    GatherPass::Dispatch how{.threads = listed ? glm::ivec2(samples.groupsOfARow * kTile, count * kTile) : glm::ivec2(extent.x, count)};
+    GatherPass::Dispatch target{.threads = listed ? glm::ivec2(samples.groupsOfARow * kTile, count * kTile) : glm::ivec2(extent.x, count)};
     if (listed && inBand == samples.rowsOfARange) {
       // How many workgroups there are is known on the device.
-      how.arguments = &pass_.list();
-      how.offset = std::uint64_t(first / inBand) * sizeof(shader::DispatchSize);
-      how.mostGroups = std::uint64_t(inBand) * std::uint64_t(samples.groupsOfARow);
+      target.arguments = &pass_.list();
+      target.offset = std::uint64_t(first / inBand) * sizeof(shader::DispatchSize);
+      target.mostGroups = std::uint64_t(inBand) * std::uint64_t(samples.groupsOfARow);
     }
-    marchBand(commands, parts, how, push);
+    marchBand(commands, parts, target, push);
   }
 }
 

@@ -45,7 +45,7 @@ class MergedPass {
  private:
   void begin(Commands& commands, std::span<const Part> parts, const Camera& camera);
   void march(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples);
-  void marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch how, const shader::SamplesPush& samples);
+  void marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch target, const shader::SamplesPush& samples);
   std::uint64_t mostEntries() const;
   int mostSlabs(const shader::GatherFrame& frame, int volumes) const;
   std::uint64_t entriesOfSlot() const;

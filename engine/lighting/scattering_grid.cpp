@@ -235,7 +235,6 @@ std::vector<double> ScatteringGrid::dots(int vector, int first, int count) {
   commands.dispatch(makeComputePipeline(device_, shaders::scattering_dots), bindings,
                     shader::ScatteringDotsPush{.values = vectorLength(), .vector = vector, .first = first, .count = count},
                     {shader::kDotThreads * shader::kDotGroups, 1, 1});
-  commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_HOST_BIT);
   commands.submitAndWait();
   const auto* const parts = reinterpret_cast<const float*>(sums_.mapped());
   std::vector<double> result(std::size_t(count), 0.0);

@@ -1,9 +1,10 @@
 #include "engine/lighting/scattering_solver.h"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <memory>
 
-#include "embedded/scattering_texels.h"
 #include "engine/core/error.h"
 #include "engine/lighting/scattering_grid.h"
 
@@ -11,7 +12,54 @@ namespace freevoxels {
 
 namespace {
 
+/// Limit of the sets of sweeps on one grid; the solution that is reached by then is used.
 constexpr int kMostSets = 60;
+
+/// min |b - A x| of a growing Hessenberg matrix A, of which Givens rotations make a triangular one (Saad and Schultz 1986, Section 3.2).
+class LeastSquares {
+ public:
+  static constexpr int kMostColumns = shader::kMaxBasis;
+  using Column = std::array<double, kMostColumns + 1>;
+
+  /// b is `norm` in its first element, and 0 in all others.
+  explicit LeastSquares(double norm) : right_{norm} {}
+  int columns() const { return count_; }
+
+  /// Adds a column, whose element below the diagonal is `length`. Returns the norm of the residual.
+  double add(Column column, double length) {
+    const auto last = std::size_t(count_++);
+    for (std::size_t i = 0; i < last; ++i) {
+      const double upper = column[i];
+      column[i] = cosines_[i] * upper + sines_[i] * column[i + 1];
+      column[i + 1] = cosines_[i] * column[i + 1] - sines_[i] * upper;
+    }
+    const double size = std::hypot(column[last], length);
+    cosines_[last] = size > 0.0 ? column[last] / size : 1.0;
+    sines_[last] = size > 0.0 ? length / size : 0.0;
+    column[last] = size;
+    columns_[last] = column;
+    right_[last + 1] = -sines_[last] * right_[last];
+    right_[last] *= cosines_[last];
+    return std::abs(right_[last + 1]);
+  }
+
+  /// x, by back substitution.
+  std::vector<double> solve() const {
+    Column right = right_;
+    std::vector<double> factors(std::size_t(count_), 0.0);
+    for (std::size_t i = factors.size(); i-- > 0;) {
+      for (std::size_t j = i + 1; j < factors.size(); ++j) right[i] -= columns_[j][i] * factors[j];
+      factors[i] = columns_[i][i] != 0.0 ? right[i] / columns_[i][i] : 0.0;
+    }
+    return factors;
+  }
+
+ private:
+  std::array<Column, kMostColumns> columns_{};  ///< of the triangular matrix
+  Column right_;                                ///< b, rotated
+  std::array<double, kMostColumns> cosines_{}, sines_{};
+  int count_ = 0;
+};
 
 /// GMRES with a restart after shader::kMaxBasis vectors.
 class Gmres {
@@ -39,8 +87,9 @@ class Gmres {
   double residual() const { return residual_; }
 
  private:
-  static constexpr int kBasis = shader::kMaxBasis;
   static constexpr int kFirst = ScatteringGrid::kBasis;
+  /// What is left of a vector, relative to it, below which the basis holds the solution.
+  static constexpr double kBreakdown = 1e-6;
 
   /// Makes the normalised residual the first vector of the basis, and returns its norm.
   double restart() {
@@ -54,16 +103,16 @@ class Gmres {
   /// Extends the basis until the residual is small or the basis full, and adds the best combination to the solution. Returns whether the
   /// residual is small.
   bool cycle(double norm, double enough) {
-    std::array<std::array<double, kBasis + 1>, kBasis> columns{};  // of the triangular matrix
-    std::array<double, kBasis + 1> right{norm};
-    std::array<double, kBasis> cosines{}, sines{};
-    int count = 0;
+    LeastSquares squares(norm);
     last_ = norm;
-    while (count < kBasis && last_ > enough && sets_ < kMostSets) {
+    while (squares.columns() < LeastSquares::kMostColumns && last_ > enough && sets_ < kMostSets) {
+      const int count = squares.columns();
       grid_.sweepDifference(kFirst + count, kFirst + count + 1, progress_);
       ++sets_;
+      // Classical Gram-Schmidt. The norm of what is left follows from Pythagoras, which saves a pass over the vectors; what orthogonality
+      // is lost by that is far below kScatteringTolerance.
       const std::vector<double> dots = grid_.dots(kFirst + count + 1, kFirst, count + 2);
-      std::array<double, kBasis + 1>& column = columns[std::size_t(count)];
+      LeastSquares::Column column{};
       std::vector<double> factors;
       double rest = dots.back();
       for (int i = 0; i <= count; ++i) {
@@ -72,42 +121,13 @@ class Gmres {
         rest -= dots[std::size_t(i)] * dots[std::size_t(i)];
       }
       const double length = std::sqrt(std::max(rest, 0.0));
-      const double next = rotate(column, cosines, sines, right, count, length);
-      ++count;
-      last_ = std::abs(next);
-      if (length <= 1e-6 * std::sqrt(dots.back())) break;  // the basis holds the solution
-      if (count < kBasis)
-        grid_.combine({.to = kFirst + count, .from = kFirst + count, .first = kFirst, .factors = factors, .scale = 1.0 / length});
+      last_ = squares.add(column, length);
+      if (length <= kBreakdown * std::sqrt(dots.back())) break;
+      if (count + 1 < LeastSquares::kMostColumns)
+        grid_.combine({.to = kFirst + count + 1, .from = kFirst + count + 1, .first = kFirst, .factors = factors, .scale = 1.0 / length});
     }
-    addToSolution(columns, right, count);
+    grid_.combine({.to = ScatteringGrid::kSolution, .from = ScatteringGrid::kSolution, .first = kFirst, .factors = squares.solve()});
     return last_ <= enough;
-  }
-
-  /// Applies the rotations to a new column of the Hessenberg matrix whose last element is `length`, and returns the new residual.
-  static double rotate(std::array<double, kBasis + 1>& column, std::array<double, kBasis>& cosines, std::array<double, kBasis>& sines,
-                       std::array<double, kBasis + 1>& right, int count, double length) {
-    for (std::size_t i = 0; i < std::size_t(count); ++i) {
-      const double upper = column[i];
-      column[i] = cosines[i] * upper + sines[i] * column[i + 1];
-      column[i + 1] = cosines[i] * column[i + 1] - sines[i] * upper;
-    }
-    const auto last = std::size_t(count);
-    const double size = std::hypot(column[last], length);
-    cosines[last] = size > 0.0 ? column[last] / size : 1.0;
-    sines[last] = size > 0.0 ? length / size : 0.0;
-    column[last] = size;
-    right[last + 1] = -sines[last] * right[last];
-    right[last] *= cosines[last];
-    return right[last + 1];
-  }
-
-  void addToSolution(const std::array<std::array<double, kBasis + 1>, kBasis>& columns, std::array<double, kBasis + 1> right, int count) {
-    std::vector<double> factors(std::size_t(count), 0.0);
-    for (std::size_t i = std::size_t(count); i-- > 0;) {
-      for (std::size_t j = i + 1; j < std::size_t(count); ++j) right[i] -= columns[j][i] * factors[j];
-      factors[i] = columns[i][i] != 0.0 ? right[i] / columns[i][i] : 0.0;
-    }
-    grid_.combine({.to = ScatteringGrid::kSolution, .from = ScatteringGrid::kSolution, .first = kFirst, .factors = factors});
   }
 
   ScatteringGrid& grid_;
@@ -116,15 +136,16 @@ class Gmres {
   double residual_ = 0.0, last_ = 0.0;
 };
 
-/// The same light for all that a solution depends on.
+/// Whether a solution for one light is that for the other.
 bool isSameLight(const Lighting& a, const Lighting& b) {
-  return a.lights == b.lights && a.ambient == b.ambient && a.environment == b.environment && a.tint == b.tint && a.phaseG == b.phaseG &&
-         a.scattering == b.scattering && a.surface == b.surface;
+  Lighting other = b;
+  other.attenuation = a.attenuation;  // which says how direct light is found alone
+  return a == other;
 }
 
-/// Coarser grids are made while there are more cells than this.
+/// The coarsest grid has at most so many cells.
 constexpr std::size_t kFewCells = 512;
-/// Of solutions on coarser cells, which differ by more than that.
+/// Residual at which coarser grids stop. They only provide a start, and discretisation changes their solution by more than this.
 constexpr double kCoarseTolerance = 5e-3;
 
 }  // namespace
@@ -134,6 +155,7 @@ bool hasScatteredLight(const Lighting& lighting, bool emits) {
 }
 
 std::uint64_t scatteringBytes(glm::ivec3 dimensions, bool hasPhase) {
+  // 1 + 1/8 + 1/64 + ... = 8/7: with all coarser grids.
   return ScatteringGrid::bytes(ScatteringMedium::gridOf(dimensions).count(), 3, hasPhase) * 8 / 7;
 }
 
@@ -142,32 +164,40 @@ ScatteringSolver::ScatteringSolver(const Device& device, ScatteringMedium medium
   while (media_.back().grid().count() > kFewCells) media_.push_back(media_.back().coarser());
 }
 
+std::unique_ptr<ScatteringGrid> ScatteringSolver::solveOrders(const Lighting& lighting, const Progress& progress) {
+  auto grid = std::make_unique<ScatteringGrid>(device_, medium(), lighting);
+  facts_.sets = grid->sweepOrders(lighting.scattering, progress);
+  facts_.work = facts_.sets;
+  return grid;
+}
+
+/// Solves on the coarsest grid, and on each finer one from that solution.
+std::unique_ptr<ScatteringGrid> ScatteringSolver::solveAllOrders(const Lighting& lighting, const Progress& progress) {
+  double reference = 0.0;
+  std::unique_ptr<ScatteringGrid> coarse;
+  for (std::size_t level = media_.size(); level-- > 0;) {
+    auto grid = std::make_unique<ScatteringGrid>(device_, media_[level], lighting);
+    if (coarse) grid->startFrom(*coarse);
+    Gmres gmres(*grid, progress);
+    // The norm of a vector grows with the root of the number of cells.
+    const double scale = coarse ? std::sqrt(double(grid->cells()) / double(coarse->cells())) : 0.0;
+    const double first = gmres.solve(scale * reference, level > 0 ? kCoarseTolerance : kScatteringTolerance);
+    reference = coarse ? scale * reference : first;
+    facts_.sets = gmres.sets();
+    facts_.work += gmres.sets() * double(grid->cells()) / double(medium().grid().count());
+    facts_.residual = gmres.residual();
+    coarse = std::move(grid);
+  }
+  return coarse;
+}
+
 void ScatteringSolver::solve(const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress) {
   if (solved_ && isSameLight(*solved_, lighting)) return;
   solved_.reset();
   const StageTimer timer(times, "scattering");
   facts_ = {.cells = medium().grid().cells, .edge = medium().grid().edge};
-  double reference = 0.0;
-  std::unique_ptr<ScatteringGrid> coarse;
-  for (std::size_t level = lighting.scattering == kAllOrders ? media_.size() : 1; level-- > 0;) {
-    auto grid = std::make_unique<ScatteringGrid>(device_, media_[level], lighting);
-    if (lighting.scattering != kAllOrders) {
-      facts_.sets = grid->sweepOrders(lighting.scattering, progress);
-      facts_.work = facts_.sets;
-    } else {
-      if (coarse) grid->startFrom(*coarse);
-      Gmres gmres(*grid, progress);
-      // The norm of a vector grows with the root of the number of cells.
-      const double scale = coarse ? std::sqrt(double(grid->cells()) / double(coarse->cells())) : 0.0;
-      const double first = gmres.solve(scale * reference, level > 0 ? kCoarseTolerance : kScatteringTolerance);
-      reference = coarse ? scale * reference : first;
-      facts_.sets = gmres.sets();
-      facts_.work += gmres.sets() * double(grid->cells()) / double(medium().grid().count());
-      facts_.residual = gmres.residual();
-    }
-    coarse = std::move(grid);
-  }
-  texelBuffer_ = coarse->makeTexels();
+  const bool isSolved = lighting.scattering == kAllOrders;
+  texelBuffer_ = (isSolved ? solveAllOrders(lighting, progress) : solveOrders(lighting, progress))->makeTexels();
   texels_ = TexelView(device_, texelBuffer_);
   solved_ = lighting;
   brightest_ = download().brightest();

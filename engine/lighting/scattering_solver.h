@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <glm/glm.hpp>
+#include <memory>
 #include <optional>
 #include <vector>
 
@@ -17,6 +18,8 @@
 #include "shaders/scattering_interface.h"
 
 namespace freevoxels {
+
+class ScatteringGrid;
 
 /// Iterations end when the equation's residual is at most this fraction of the light that is scattered once more.
 inline constexpr double kScatteringTolerance = 3e-3;
@@ -52,6 +55,9 @@ class ScatteringSolver {
   const ScatteringFacts& facts() const { return facts_; }
 
  private:
+  std::unique_ptr<ScatteringGrid> solveOrders(const Lighting& lighting, const Progress& progress);
+  std::unique_ptr<ScatteringGrid> solveAllOrders(const Lighting& lighting, const Progress& progress);
+
   const Device& device_;
   std::vector<ScatteringMedium> media_;  ///< the medium, and the same in cells of twice the edge, again and again
   std::optional<Lighting> solved_;

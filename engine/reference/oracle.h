@@ -53,7 +53,7 @@ struct Oracle {
 Oracle renderOracle(const Volume& volume, const Classification& classification, const Camera& camera,
                     const OracleSettings& settings, const Progress& progress = {});
 
-/// Of one or several volumes, which attenuate and shadow each other. Those of several are marched in steps of half of `step`
+/// The same of one or several volumes, which attenuate and shadow each other. Those of several are marched in steps of half of `step`
 /// (merged_march.h).
 Oracle renderOracle(std::span<const PlacedMedium> volumes, const Camera& camera, const OracleSettings& settings,
                     const Progress& progress = {});

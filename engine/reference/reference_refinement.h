@@ -23,7 +23,7 @@ class ReferenceRefinement {
  public:
   ReferenceRefinement(const std::vector<GatherSums>& samples, glm::ivec2 extent);
 
-  /// By coarse sample, x fastest.
+  /// The roughness of each coarse sample, x fastest.
   const std::vector<ReferenceRoughness>& roughness() const { return roughness_; }
   /// The largest roughness of the corners of the cell that has the sample; nothing for coarse samples, and for those of incomplete cells,
   /// which are marched.

@@ -12,8 +12,8 @@ namespace freevoxels {
 /// Rays end where they meet the surfaces: light and alpha of a pixel are those of what is in front of its depth.
 struct Holdout {
   glm::ivec2 size{0};
-  /// By pixel, row 0 at the top: distance from the eye along the viewing axis in world units, as Image::depth has it, at least 0;
-  /// infinity, or any number beyond the volume, where nothing is in front.
+  /// The depth of each pixel, row 0 at the top: its distance from the eye along the viewing axis in world units, as Image::depth has it, at
+  /// least 0; infinity, or any number beyond the volume, where nothing is in front.
   std::vector<float> depths;
 };
 

@@ -48,7 +48,7 @@ struct StreamedVolume {
   std::vector<glm::ivec3> cells;  ///< of all chunks that may hold something, in any order
   ChunkSource chunk;
 };
-/// Of a file; `parts` must outlive the result.
+/// The volume of a file that is read part by part; `parts` must outlive the result.
 StreamedVolume partsStream(const VdbParts& parts, const Classification& classification);
 void bakeStreamed(const std::filesystem::path& file, const StreamedVolume& volume, const Classification& classification,
                   const BakeSettings& settings, const Progress& progress = {}, const BakeTeam& team = {});

@@ -16,7 +16,7 @@ namespace freevoxels::fvx {
 /// The values of kChunkEdge^3 voxels; kInactiveVoxel beyond the volume.
 struct ChunkValues {
   glm::ivec3 cell{0};
-  /// By Channel: [component][brick][voxel of the brick], x fastest in the last two. Empty if no voxel has a
+  /// The values of each Channel: [component][brick][voxel of the brick], x fastest in the last two. Empty if no voxel has a
   /// value.
   std::array<std::vector<float>, kChannels> channels;
 

@@ -12,7 +12,7 @@
 
 namespace freevoxels::fvx {
 
-/// Of a level of a channel. Several threads may read at the same time. The file must outlive it.
+/// Reads the chunks of one level of a channel. Several threads may read at the same time. The file must outlive it.
 class ChunkReader {
  public:
   ChunkReader(const FvxFile& file, Channel channel, int level);

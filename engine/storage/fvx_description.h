@@ -14,7 +14,7 @@
 
 namespace freevoxels::fvx {
 
-/// By Channel. A channel without a value is not in the file; the scalars always are.
+/// The encoding of each Channel. A channel without a value is not in the file; the scalars always are.
 using Encodings = std::array<std::optional<Encoding>, kChannels>;
 
 /// Number of values of a voxel in a channel: three for albedos, otherwise one.

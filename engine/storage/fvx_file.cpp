@@ -25,7 +25,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// That are hashed at a time.
+/// Bytes that are read and hashed at a time.
 constexpr std::size_t kPieceBytes = std::size_t(1) << 20;
 
 class Hash {
@@ -188,8 +188,8 @@ void FvxFile::checkHash(const Section& section) const {
 
 template <typename Value>
 std::vector<Value> FvxFile::valuesOf(const Section& section) const {
-  std::vector<Value> values(section.bytes / sizeof(Value));
   if (section.bytes % sizeof(Value) != 0) failDamaged("an index ends in the middle of an entry");
+  std::vector<Value> values(section.bytes / sizeof(Value));
   const std::span<std::byte> bytes = std::as_writable_bytes(std::span(values));
   readBytes(section.offset, bytes);
   if (hashOf(bytes) != section.hash) failSectionHash(section);

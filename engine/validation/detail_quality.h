@@ -11,7 +11,7 @@ namespace freevoxels {
 /// pixel wide.
 ReportSection detailQuality(const Device& device, const QualityScene& scene);
 
-/// By how much the change from frame to frame in a zoom exceeds that with all voxels.
+/// Measures by how much the change from frame to frame in a zoom exceeds that with all voxels.
 ReportSection zoomQuality(const Device& device, const QualityScene& scene);
 
 }  // namespace freevoxels

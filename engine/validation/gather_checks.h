@@ -22,7 +22,7 @@ class GatherOutputs {
 };
 using GatherMaker = std::function<std::unique_ptr<GatherOutputs>(const Volume&, const Classification&)>;
 
-/// By the Renderer. `device` and the volumes have to outlive what is made.
+/// Makes frames with the Renderer. `device` and the volumes have to outlive what is made.
 GatherMaker deviceGather(const Device& device);
 
 /// Frames of the scene without lights, `size` pixels each: blocks as they are stored, sums of the lattice's samples, sums after

@@ -19,13 +19,6 @@ std::uint64_t groupsFor(std::uint64_t slots) {
   return (slots + shader::kCutSlotsPerGroup - 1) / shader::kCutSlotsPerGroup;
 }
 
-void makeLarger(const Device& device, Buffer& buffer, std::uint64_t bytes, const char* name,
-                VkBufferUsageFlags usage = 0) {
-  if (buffer.bytes() >= bytes) return;
-  buffer = {};  // free the old buffer before allocating the new one
-  buffer = Buffer(device, bytes, MemoryUse::Device, name, usage);
-}
-
 /// Upper bound of the number of drawn blocks: every drawn block contains at least one occupied block of the
 /// finest level, and shares it with no other.
 std::uint64_t mostDrawn(const CutInputs& inputs) {
@@ -95,11 +88,11 @@ void CutPass::makeRoom(const CutInputs& inputs) {
   const std::uint64_t groups = std::max<std::uint64_t>(groupCount_, 1);
   const std::uint64_t words = std::max<std::uint64_t>((inputs.volume.coarseBlocks() + 31) / 32, 1);
   cut_.chunkCount = std::uint32_t((most + shader::kSplatsPerChunk - 1) / shader::kSplatsPerChunk);
-  makeLarger(device_, opened_, words * sizeof(std::uint32_t), "opened blocks");
-  makeLarger(device_, masks_, groups * shader::kCutThreads * sizeof(std::uint32_t), "cut masks");
-  makeLarger(device_, cut_.groupOffsets, (groups + 1) * sizeof(std::uint32_t), "cut group offsets");
-  makeLarger(device_, cut_.indices, most * sizeof(std::uint32_t), "cut");
-  makeLarger(device_, cut_.chunks, cut_.chunkCount * sizeof(shader::ChunkArguments), "cut chunk arguments",
+  growBuffer(device_, opened_, words * sizeof(std::uint32_t), "opened blocks");
+  growBuffer(device_, masks_, groups * shader::kCutThreads * sizeof(std::uint32_t), "cut masks");
+  growBuffer(device_, cut_.groupOffsets, (groups + 1) * sizeof(std::uint32_t), "cut group offsets");
+  growBuffer(device_, cut_.indices, most * sizeof(std::uint32_t), "cut");
+  growBuffer(device_, cut_.chunks, cut_.chunkCount * sizeof(shader::ChunkArguments), "cut chunk arguments",
              VK_BUFFER_USAGE_INDIRECT_BUFFER_BIT);
 }
 

@@ -19,9 +19,9 @@ class DicomTags {
   static std::optional<DicomTags> read(const std::filesystem::path& file);
 
   bool has(DicomTag tag) const { return values_.contains(tag); }
-  /// Without the padding at its end; empty without the element.
+  /// The text of an element, without the padding at its end; empty where there is no such element.
   std::string text(DicomTag tag) const;
-  /// Of a value of 16 bits; nothing without the element.
+  /// The value of an element of 16 bits; nothing where there is no such element.
   std::optional<std::uint16_t> number(DicomTag tag) const;
   /// Length of the values of the image in bytes; nothing without them, and where they are compressed.
   std::optional<std::uint32_t> pixelBytes() const { return pixelBytes_; }

@@ -35,7 +35,7 @@ struct LabelRequest {
   Labels labels{.showsAll = false, .styles = {}};  ///< Labels::isNone(): all values are scalars
   bool ofAllGrids = false;                         ///< whether real numbers are labels, too, and not only whole numbers, booleans and masks
 
-  /// Of a grid of whole numbers or of others; null where its values are scalars.
+  /// The labels of a grid of whole numbers or of others; null where its values are scalars.
   const Labels* of(bool isWhole) const { return !labels.isNone() && (isWhole || ofAllGrids) ? &labels : nullptr; }
 };
 

@@ -13,7 +13,7 @@ enum class SampleType : std::uint8_t { U8, I8, U16, I16, U32, I32, U64, I64, F32
 std::size_t bytesOf(SampleType type);
 /// "uint16", "float32"
 std::string_view nameOf(SampleType type);
-/// Of such a name, or a short one: "u16", "f32". Nothing for other words.
+/// The type of such a name, or of a short one: "u16", "f32". Nothing for other words.
 std::optional<SampleType> sampleTypeOf(std::string_view name);
 
 /// Calls `work` with a value of the type.

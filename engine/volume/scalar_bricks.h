@@ -102,7 +102,7 @@ class ScalarBricks {
   std::vector<std::size_t> inOrder() const;
   /// The part of the box from voxel `low` to `high`. Beyond this box there is no data.
   ScalarBricks cropped(glm::ivec3 low, glm::ivec3 high) const;
-  /// On the host.
+  /// Bytes that the bricks and their index take on the host.
   std::uint64_t bytes() const { return bytesOf(bricks().size()) + numbers_.bytes(); }
   /// The same of a number of bricks, without their index.
   static std::uint64_t bytesOf(std::uint64_t bricks) { return bricks * (sizeof(Brick) + sizeof(glm::ivec3)); }

@@ -47,10 +47,10 @@ class ScatteringMedium {
 
   /// Empty cells.
   ScatteringMedium(glm::ivec3 dimensions, const glm::dmat4& indexToWorld);
-  /// Of a whole volume.
+  /// The cells of a whole volume.
   ScatteringMedium(const Volume& volume, const Classification& classification);
 
-  /// Of several volumes, wherever they are: cells of an index space along the axes of the world.
+  /// The cells of several volumes, wherever they are: cells of an index space along the axes of the world.
   explicit ScatteringMedium(std::span<const PlacedMedium> volumes);
 
   /// Adds the voxels of a box of the volume, which begins at voxel `first` of it. Each voxel must be added once.
@@ -64,7 +64,7 @@ class ScatteringMedium {
   const CellGrid& directGrid() const { return directGrid_; }
   /// Mean extinction of each direct cell, per world unit, x fastest.
   std::vector<float> directExtinction() const { return {direct_.begin(), direct_.end()}; }
-  /// Of a cell: mean extinction, extinction times albedo, and emission, per world unit; linear Rec.709.
+  /// The means of a cell: extinction, extinction times albedo, and emission, per world unit; linear Rec.709.
   struct Cell {
     double extinction = 0.0;
     glm::dvec3 scattering{0.0};

@@ -57,7 +57,7 @@ class SparseGrid {
         if (const Value& value = nodes_[node][std::size_t(i)]; value != empty_)
           visit(places_[node] * kNodeEdge + glm::ivec3(i % kNodeEdge, i / kNodeEdge % kNodeEdge, i / (kNodeEdge * kNodeEdge)), value);
   }
-  /// On the host.
+  /// Bytes that the grid takes on the host.
   std::uint64_t bytes() const {
     return table_.size() * sizeof(std::uint32_t) + nodes_.size() * (sizeof(Node) + sizeof(glm::ivec3)) +
            hashed_.size() * 2 * (sizeof(glm::ivec3) + sizeof(std::uint32_t));

@@ -15,7 +15,7 @@ struct TransferPreset {
   std::string_view json;
 };
 
-/// In the order in which they are listed.
+/// All presets, in the order in which they are listed.
 std::span<const TransferPreset> transferPresets();
 /// The preset of this name, in which case does not matter, nor whether words are joined by -, _ or a space; null if there is none.
 const TransferPreset* presetNamed(std::string_view name);

@@ -81,7 +81,7 @@ struct Volume {
   /// where the voxels of this volume are to be asked.
   std::shared_ptr<const Subject> content;
 
-  /// Of the box; the largest number there is if it has more.
+  /// Voxels of the box; the largest number there is if it has more.
   std::size_t voxelCount() const {
     const double count = double(dimensions.x) * double(dimensions.y) * double(dimensions.z);
     if (count >= 0x1p63) return std::numeric_limits<std::size_t>::max();

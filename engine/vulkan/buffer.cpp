@@ -108,6 +108,13 @@ void upload(const Device& device, const Buffer& buffer, std::span<const std::byt
   }
 }
 
+bool growBuffer(const Device& device, Buffer& buffer, VkDeviceSize bytes, const char* name, VkBufferUsageFlags usage) {
+  if (buffer.bytes() >= bytes) return false;
+  buffer = {};  // free the old buffer before allocating the new one
+  buffer = Buffer(device, bytes, MemoryUse::Device, name, usage);
+  return true;
+}
+
 void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first) {
   FV_CHECK_LE(first + data.size(), buffer.bytes());
   if (data.empty()) return;

@@ -109,6 +109,9 @@ class TexelView {
 /// Blocks until the copy is complete.
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data);
 
+/// Replaces a buffer that is smaller than `bytes`, whose contents are lost, by one of MemoryUse::Device. Returns whether it did.
+bool growBuffer(const Device& device, Buffer& buffer, VkDeviceSize bytes, const char* name, VkBufferUsageFlags usage = 0);
+
 /// Copies data.size() bytes of `buffer`, starting at byte `first`, to the host. Blocks until the copy is
 /// complete.
 void download(const Device& device, const Buffer& buffer, std::span<std::byte> data, VkDeviceSize first = 0);

@@ -1,7 +1,6 @@
 #include "engine/vulkan/device.h"
 
 #include <fmt/ranges.h>
-#include <unistd.h>
 
 #include <algorithm>
 #include <array>
@@ -10,6 +9,7 @@
 #include <map>
 
 #include "engine/core/error.h"
+#include "engine/core/machine.h"
 #include "engine/vulkan/device_requirements.h"
 #include "engine/vulkan/owned.h"
 #include "engine/vulkan/pipeline.h"
@@ -34,9 +34,20 @@ std::string typeName(VkPhysicalDeviceType type) {
   }
 }
 
-int preference(const std::string& type) {
-  constexpr std::array kOrder{"discrete GPU", "integrated GPU", "virtual GPU", "other", "CPU"};
-  return int(std::ranges::find(kOrder, type) - kOrder.begin());
+/// Devices of a smaller number are preferred.
+int preference(VkPhysicalDeviceType type) {
+  switch (type) {
+    case VK_PHYSICAL_DEVICE_TYPE_DISCRETE_GPU:
+      return 0;
+    case VK_PHYSICAL_DEVICE_TYPE_INTEGRATED_GPU:
+      return 1;
+    case VK_PHYSICAL_DEVICE_TYPE_VIRTUAL_GPU:
+      return 2;
+    case VK_PHYSICAL_DEVICE_TYPE_CPU:
+      return 4;
+    default:
+      return 3;
+  }
 }
 
 std::string uuidText(const std::uint8_t (&uuid)[VK_UUID_SIZE]) {
@@ -56,12 +67,8 @@ std::vector<VkPhysicalDevice> physicalDevices(const Instance& instance) {
   VK_CHECK_RESULT(result, "vkEnumeratePhysicalDevices");
   devices.resize(count);
   VK_CHECK(vkEnumeratePhysicalDevices(instance.handle(), &count, devices.data()));
+  devices.resize(count);  // one may have been unplugged in between
   return devices;
-}
-
-/// The machine's memory. A CPU device allocates from it whatever heap size it reports (lavapipe: 2 GiB).
-std::uint64_t hostMemoryBytes() {
-  return std::uint64_t(sysconf(_SC_PHYS_PAGES)) * std::uint64_t(sysconf(_SC_PAGESIZE));
 }
 
 /// What this process may allocate of the largest device-local heap.
@@ -103,12 +110,14 @@ DeviceDescription describe(int index, VkPhysicalDevice physical) {
   DeviceDescription description{.index = index,
                                 .name = base.properties.deviceName,
                                 .type = typeName(base.properties.deviceType),
+                                .vulkanType = base.properties.deviceType,
                                 .uuid = uuidText(vulkan11.deviceUUID),
                                 .driver = fmt::format("{} {}", vulkan12.driverName, vulkan12.driverInfo),
                                 .memoryBytes = heapBytes(physical),
                                 .rejections = findRejections(physical)};
   if (base.properties.deviceType == VK_PHYSICAL_DEVICE_TYPE_CPU)
-    description.memoryBytes = std::max(description.memoryBytes, hostMemoryBytes() / 4 * 3);
+    // A CPU device allocates from the machine's memory whatever heap size it reports (lavapipe: 2 GiB).
+    description.memoryBytes = std::max(description.memoryBytes, machineMemoryBytes() / 4 * 3);
   return description;
 }
 
@@ -136,7 +145,7 @@ const DeviceDescription& choose(const std::vector<DeviceDescription>& devices, s
     if (!device.rejections.empty())
       rejected.push_back(
           fmt::format("device {} ({}): {}", device.index, device.name, fmt::join(device.rejections, ", ")));
-    else if (best == nullptr || preference(device.type) < preference(best->type))
+    else if (best == nullptr || preference(device.vulkanType) < preference(best->vulkanType))
       best = &device;
   }
   if (best != nullptr) return *best;
@@ -175,11 +184,11 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
   return descriptions;
 }
 
-Device::Device(const Instance& instance, std::string_view selector, std::uint64_t memoryLimit,
-               std::span<const char* const> moreExtensions, const std::filesystem::path& cacheFolder)
+Device::Device(const Instance& instance, std::string_view selector, const DeviceLimits& limits, std::span<const char* const> moreExtensions,
+               const std::filesystem::path& cacheFolder)
     : description_(choose(listDevices(instance), selector)),
       physical_(physicalDevices(instance)[std::size_t(description_.index)]),
-      memoryLimit_(memoryLimit),
+      limits_(limits),
       mapsOwnMemory_(!instance.validates()),
       isOwn_(true),
       queueFamily_(*findQueueFamily(physical_)) {
@@ -209,14 +218,19 @@ Device::Device(const Instance& instance, std::string_view selector, std::uint64_
         vkGetInstanceProcAddr(instance.handle(), "vkSetDebugUtilsObjectNameEXT"));
   VkQueue handle = VK_NULL_HANDLE;
   vkGetDeviceQueue(device_, queueFamily_, 0, &handle);
-  makeStores(handle, nullptr, cacheFolder);
+  try {
+    makeStores(handle, nullptr, cacheFolder);
+  } catch (...) {  // the destructor does not run
+    queue_ = nullptr;
+    vkDestroyDevice(device_, nullptr);
+    throw;
+  }
 }
 
-Device::Device(const Instance& instance, const AdoptedDevice& adopted, std::uint64_t memoryLimit,
-               const std::filesystem::path& cacheFolder)
+Device::Device(const Instance& instance, const AdoptedDevice& adopted, const DeviceLimits& limits, const std::filesystem::path& cacheFolder)
     : description_(describeAdopted(instance, adopted)),
       physical_(adopted.physical),
-      memoryLimit_(memoryLimit),
+      limits_(limits),
       mapsOwnMemory_(true),
       isOwn_(false),
       queueFamily_(adopted.queueFamily),
@@ -233,6 +247,7 @@ void Device::describePhysical() {
                                    .pNext = &vulkan11};
   vkGetPhysicalDeviceProperties2(physical_, &base);
   properties_ = base.properties;
+  properties_.limits.maxTexelBufferElements = std::min(properties_.limits.maxTexelBufferElements, limits_.texels);
   maximumAllocation_ = vulkan11.maxMemoryAllocationSize;
   vkGetPhysicalDeviceMemoryProperties(physical_, &memory_);
   timestampBits_ = queueFamilies(physical_)[queueFamily_].timestampValidBits;
@@ -256,7 +271,7 @@ Device::~Device() {
 
 std::uint64_t Device::availableBytes() const {
   const auto left = [](std::uint64_t bytes, std::uint64_t used) { return bytes - std::min(bytes, used); };
-  return std::min(left(memoryLimit_, allocated_), left(description_.memoryBytes, *processBytes_));
+  return std::min(left(limits_.memory, allocated_), left(description_.memoryBytes, *processBytes_));
 }
 
 void Device::release(std::uint64_t bytes) const {
@@ -267,12 +282,12 @@ void Device::release(std::uint64_t bytes) const {
 void Device::claim(std::uint64_t bytes) const {
   const std::uint64_t allocated = allocated_ += bytes;
   *processBytes_ += bytes;
-  if (allocated > memoryLimit_) {
+  if (allocated > limits_.memory) {
     release(bytes);
     fail(ErrorKind::OutOfMemory,
          "at least {} MiB of device memory are needed and the limit is {} MiB: raise {}, or use a smaller "
          "volume or {}",
-         (allocated + 0xfffff) >> 20, memoryLimit_ >> 20, Parameter("memory-limit"), Parameter("size"));
+         (allocated + 0xfffff) >> 20, limits_.memory >> 20, Parameter("memory-limit"), Parameter("size"));
   }
   std::uint64_t peak = peak_;
   while (peak < allocated && !peak_.compare_exchange_weak(peak, allocated)) {

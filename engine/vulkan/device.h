@@ -26,6 +26,7 @@ struct DeviceDescription {
   int index = 0;
   std::string name;
   std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
+  VkPhysicalDeviceType vulkanType = VK_PHYSICAL_DEVICE_TYPE_OTHER;  ///< the same
   std::string uuid;  ///< 8-4-4-4-12 hexadecimal digits
   std::string driver;
   /// Bytes of the largest device-local heap that this process may use: all of them, or what other processes leave free if
@@ -49,19 +50,24 @@ struct AdoptedDevice {
   std::mutex* queueMutex = nullptr;  ///< as for the constructor of Queue
 };
 
+/// What a Device may use of what there is.
+struct DeviceLimits {
+  std::uint64_t memory = std::numeric_limits<std::uint64_t>::max();  ///< bytes that are allocated
+  std::uint32_t texels = std::numeric_limits<std::uint32_t>::max();  ///< of a texel buffer: small volumes are then stored as large ones are
+};
+
 class Device {
  public:
   /// Opens the device that `selector` names by index, UUID or part of its name; if it is empty, a discrete
   /// GPU, else any GPU, else a CPU device. Fails with ErrorKind::Device and the reason why each device was
-  /// rejected. At most `memoryLimit` bytes are allocated. `extensions` are enabled in addition to the
+  /// rejected. `extensions` are enabled in addition to the
   /// engine's own. Compiled pipelines of a GPU are stored in a file in `cacheFolder` (PipelineCache), unless
   /// that is empty.
-  Device(const Instance& instance, std::string_view selector,
-         std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(),
-         std::span<const char* const> extensions = {}, const std::filesystem::path& cacheFolder = {});
+  Device(const Instance& instance, std::string_view selector, const DeviceLimits& limits = {}, std::span<const char* const> extensions = {},
+         const std::filesystem::path& cacheFolder = {});
   /// Uses a device of the caller's. Fails with ErrorKind::Device and what it lacks.
-  Device(const Instance& instance, const AdoptedDevice& adopted,
-         std::uint64_t memoryLimit = std::numeric_limits<std::uint64_t>::max(), const std::filesystem::path& cacheFolder = {});
+  Device(const Instance& instance, const AdoptedDevice& adopted, const DeviceLimits& limits = {},
+         const std::filesystem::path& cacheFolder = {});
   ~Device();
   Device(const Device&) = delete;
   Device& operator=(const Device&) = delete;
@@ -74,8 +80,6 @@ class Device {
   /// Valid bits of the queue's timestamps.
   std::uint32_t timestampBits() const { return timestampBits_; }
   const VkPhysicalDeviceLimits& limits() const { return properties_.limits; }
-  /// From now on the device has texel buffers of at most so many texels, so that small volumes are stored as large ones are; for tests.
-  void limitTexels(std::uint32_t texels) { properties_.limits.maxTexelBufferElements = std::min(limits().maxTexelBufferElements, texels); }
   const VkPhysicalDeviceMemoryProperties& memory() const { return memory_; }
   VkDeviceSize maximumAllocation() const { return maximumAllocation_; }
   /// Bytes of the largest buffer that can be bound as a storage buffer and as a texel buffer with texels of
@@ -86,7 +90,7 @@ class Device {
   }
   /// Bytes that may be allocated in total: what the device had for this process when it was opened, or the
   /// limit if that is less.
-  std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, memoryLimit_); }
+  std::uint64_t memoryBytes() const { return std::min(description_.memoryBytes, limits_.memory); }
   /// Bytes that can be allocated at present: what other objects of this class have allocated of the same physical device is not
   /// available either.
   std::uint64_t availableBytes() const;
@@ -117,7 +121,7 @@ class Device {
   VkPhysicalDeviceProperties properties_{};
   VkPhysicalDeviceMemoryProperties memory_{};
   VkDeviceSize maximumAllocation_ = 0;
-  std::uint64_t memoryLimit_;
+  DeviceLimits limits_;
   bool mapsOwnMemory_;
   bool isOwn_;  ///< whether device_ is destroyed with this object
   PFN_vkSetDebugUtilsObjectNameEXT setObjectName_ = nullptr;  ///< null unless the instance validates

@@ -28,7 +28,7 @@ class CubeDrawingTest : public DeviceTest {
 
   std::unique_ptr<Renderer> inCubes(std::shared_ptr<const VolumeSource> source, const Classification& classification) const {
     auto renderer = std::make_unique<Renderer>(device(), std::move(source), classification, TableSettings{});
-    renderer->drawInCubes();
+    renderer->requireCubes();
     return renderer;
   }
 
@@ -146,9 +146,9 @@ TEST_F(CubeDrawingTest, TheImageHasTheSameBitsWithEveryMemoryLimit) {
   const FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}}});
   const Image all = inCubes(file, classification)->render(camera, settings);
   for (const std::uint64_t mebibytes : {38, 40, 256}) {
-    const Device limited(instance(), "", mebibytes << 20);
+    const Device limited(instance(), "", {.memory = mebibytes << 20});
     Renderer renderer(limited, file, classification, {});
-    if (mebibytes == 256) renderer.drawInCubes();
+    if (mebibytes == 256) renderer.requireCubes();
     EXPECT_EQ(renderer.render(camera, settings).pixels, all.pixels) << mebibytes;
     EXPECT_TRUE(renderer.drewInCubes());
     EXPECT_LE(limited.peakBytes(), mebibytes << 20);
@@ -190,7 +190,7 @@ TEST_F(CubeDrawingTest, ALimitBelowTheLeastIsAnErrorThatNamesALimitWhichIsEnough
     FrameSettings settings = litSettings({{.place = {1.0, 0.7, 0.2}}});
     settings.size = size;
     std::string sentence;
-    const Device little(instance(), "", std::uint64_t(6) << 20);
+    const Device little(instance(), "", {.memory = std::uint64_t(6) << 20});
     try {
       Renderer(little, source, classification, {}).render(camera, settings);
     } catch (const Error& error) {
@@ -199,7 +199,7 @@ TEST_F(CubeDrawingTest, ALimitBelowTheLeastIsAnErrorThatNamesALimitWhichIsEnough
     }
     const std::size_t place = sentence.find("at least ");
     ASSERT_NE(place, std::string::npos) << sentence;
-    const Device enough(instance(), "", std::stoull(sentence.substr(place + 9)) << 20);
+    const Device enough(instance(), "", {.memory = std::stoull(sentence.substr(place + 9)) << 20});
     EXPECT_NO_THROW(Renderer(enough, source, classification, {}).render(camera, settings)) << sentence;
   }
 }

@@ -166,8 +166,7 @@ TEST_F(GatherLightTest, ChangedLightFromEverywhereIsFoundAgain) {
 /// Of volumes with more voxels than a texel buffer can have, quads, gradients and rays are read by their addresses. Rays of the view along
 /// a corner end at the borders of a full volume after different numbers of slices.
 TEST_F(GatherLightTest, MoreVoxelsThanTexelsGiveTheSameImage) {
-  Device limited(instance(), "");
-  limited.limitTexels(1 << 15);
+  const Device limited(instance(), "", {.texels = 1 << 15});
   const QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 48, makeProcedural("head", 48));
   const glm::ivec3 n(43, 38, 41);
   const Volume fog = makeVolume(n, cubeTransform(n), [](int x, int y, int z) { return 0.2 + 0.02 * ((x * 7 + y * 5 + z * 3) % 11); });

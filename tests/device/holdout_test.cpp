@@ -137,7 +137,7 @@ TEST_F(HoldoutTest, CubesAndSharesAreTheWholeImage) {
   settings.gather().sampleTolerance = 0.0f;  // as cubes have every ray marched
   settings.lod = 0.0f;
   const Image marched = renderer.render(camera, settings);
-  renderer.drawInCubes();
+  renderer.requireCubes();
   EXPECT_GE(psnr(renderer.render(camera, settings), marched), 90.0);
 }
 

@@ -197,7 +197,7 @@ TEST_F(LightingTest, AutoShadowsByTheTableWhereMemoryIsShort) {
   const Camera camera = framingCamera(v, 35.0, 25.0, 1.0, {});
   FrameSettings settings{.size = {32, 32}, .method = SplatSettings{}, .lighting = Lighting{.lights = {{}}}};
   const auto lightSweeps = [&](std::uint64_t memoryLimit) {
-    const Device limited(instance(), "", memoryLimit);
+    const Device limited(instance(), "", {.memory = memoryLimit});
     Renderer renderer(limited, v, coloured(v), {});
     const Image first = renderer.render(camera, settings);
     const auto sweeps = std::ranges::count(renderer.timings(), "light sweep", &StageTime::name);

@@ -76,7 +76,7 @@ TEST_F(ProjectionTest, CubesAndSharesHaveTheBitsOfTheWholeVolume) {
     settings.gather().sampleTolerance = 0.0f;
     Renderer whole(device(), scene.volume, scene.classification, {}), cubes(device(), scene.volume, scene.classification, {});
     const Image image = whole.render(camera, settings);
-    cubes.drawInCubes();
+    cubes.requireCubes();
     const Image byCubes = cubes.render(camera, settings);
     EXPECT_TRUE(cubes.drewInCubes());
     if (projection == IntensityProjection::Maximum) {

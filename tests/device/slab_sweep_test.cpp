@@ -52,7 +52,7 @@ TEST_F(SlabSweepTest, ALimitOfMemoryMakesThinnerSlabsOfTheSameTable) {
   const glm::ivec3 size(64, 60, 200);
   const Volume volume = randomVolume(size, cubeTransform(size), 0.3, 8.0);  // the sweeps take the most, not the upload
   const auto tableAndPeak = [&](std::uint64_t limit) {
-    const Device limited(instance(), "", limit);
+    const Device limited(instance(), "", {.memory = limit});
     std::vector<StageTime> times;
     const BuiltVolume built = buildVolume(limited, volume, {.densityScale = 1.0}, times);
     const AttenuationTable table = makeTable(limited, built.volume, {});
@@ -73,7 +73,7 @@ TEST_F(SlabSweepTest, ALimitOfMemoryMakesThinnerSlabsOfTheSameTable) {
 
 TEST_F(SlabSweepTest, NothingIsAllocatedBeyondALimit) {
   constexpr std::uint64_t kLimit = 1 << 20;
-  const Device limited(instance(), "", kLimit);
+  const Device limited(instance(), "", {.memory = kLimit});
   EXPECT_EQ(limited.availableBytes(), kLimit);
   {
     const Buffer half(limited, kLimit / 2, MemoryUse::Device, "half");

@@ -115,7 +115,7 @@ TEST(Validation, NoticesAMistake) {
 TEST_F(VulkanTest, DevicesOfAProcessShareTheMemoryOfThePhysicalDevice) {
   const Device other(instance(), std::to_string(device().description().index));
   const std::uint64_t before = other.availableBytes(), limited = 1 << 20;
-  const Device small(instance(), std::to_string(device().description().index), limited);
+  const Device small(instance(), std::to_string(device().description().index), {.memory = limited});
   const Buffer buffer(device(), 3 << 20, MemoryUse::Device, "taken");
   EXPECT_LE(other.availableBytes(), before - (3 << 20));
   EXPECT_EQ(small.availableBytes(), limited) << "its limit counts its own allocations";

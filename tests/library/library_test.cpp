@@ -257,6 +257,8 @@ TEST(Library, ErrorsNameWhatIsWrong) {
   expectError(Input, "there is no file '/none.vdb'", [] { v1::Volume::open("/none.vdb"); });
   const std::vector<float> values(8, 1.0f);
   expectError(Input, "8 values are not a box of 2 x 2 x 3 voxels", [&] { v1::Volume::copy(values, {2, 2, 3}); });
+  // The product of these edges is 2^64, which is 0 in 64 bits.
+  expectError(Input, "are not a box of", [&] { v1::Volume::copy(values, {1 << 22, 1 << 21, 1 << 21}); });
   expectError(Input, "spacing along each axis", [&] { v1::Volume::copy(values, {2, 2, 2}, {.spacing = {1.0, 0.0, 1.0}}); });
   expectError(Output, "there is no folder", [] { v1::save("/none/a.png", {.width = 1, .height = 1, .pixels = {0, 0, 0, 0}}); });
   expectError(Input, "needs 4 values", [] { v1::save("a.png", {.width = 2, .height = 1, .pixels = {0, 0, 0, 0}}); });

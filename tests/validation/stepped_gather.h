@@ -67,7 +67,7 @@ struct SteppedGather : GatherOutputs {
       });
     };
     step(alterSamples, [&](Commands& commands, const shader::GatherFrame& f) {
-      pass.recordClear(commands);
+      pass.recordClear(commands, f);
       pass.recordSamples(commands, *volume, f);
     });
     step(alterStencil, [&](Commands& commands, const shader::GatherFrame& f) {

@@ -58,7 +58,7 @@ TEST_F(ImageMakerTest, AVolumeThatDoesNotFitIsDrawnCubeByCube) {
   request.scene.input.resolution = glm::ivec3(120, 96, 97);
   request.scene.camera.size = {60, 48};
   const Image whole = downloadImage(device(), *maker_.make(request, {}).image);
-  const Device limited(instance(), "", std::uint64_t(30) << 20);
+  const Device limited(instance(), "", {.memory = std::uint64_t(30) << 20});
   ImageMaker maker(limited, volumes_);
   const DrawnImage drawn = maker.make(request, {});
   EXPECT_GT(psnr(downloadImage(limited, *drawn.image), whole), 60.0);

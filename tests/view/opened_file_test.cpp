@@ -142,7 +142,7 @@ TEST_F(OpenedFile, OnlyWhatMakesAnImageIsRemembered) {
 TEST_F(OpenedFile, ALookThatSeesNothingIsNotTaken) {
   Camera wrong;
   wrong.up = glm::dvec3(0.0);
-  state.look(wrong);
+  state.setCamera(wrong);
   EXPECT_NE(state.problem.find("up"), std::string::npos);
   EXPECT_EQ(state.scene.camera.position, glm::dvec3(1.0, 2.0, 3.0));
   EXPECT_FALSE(state.changed);

@@ -1,5 +1,5 @@
 #pragma once
-// The FreeVoxels library: volumes in, images out. Includes the standard library and the version only.
+// The FreeVoxels library: draws volumes (clouds, smoke, scans) into images on a Vulkan device.
 //
 // A scene is JSON text with the keys of a scene file, or the options of `freevoxels render` by name (with -
 // or _), in any mixture:
@@ -11,7 +11,8 @@
 //
 // Threads: any thread may call any function, with these exceptions. An object must not be assigned to, moved from or destroyed
 // while another thread uses it; frames of one device are drawn one after another.
-// Lifetimes: objects share what they need, so that they may be destroyed in any order. A device that the library opened is
+// Lifetimes: objects share what they need, so that they may be destroyed in any order. A moved-from object of any class may only be
+// assigned to or destroyed. A device that the library opened is
 // released with the last context, renderer and frame that uses it; the devices of renderers without a context stay open until the
 // process ends.
 // Failures are exceptions of type Error, or std::bad_alloc. The library prints nothing, installs no signal handlers, and reads
@@ -87,6 +88,7 @@ struct AdoptedDevice;
 /// refer to the same device.
 class FREEVOXELS_API Context {
  public:
+  /// Throws ErrorKind::Device where no device fits `options`, with the reason for each.
   explicit Context(const ContextOptions& options = {});
   std::string device() const;  ///< its name
 
@@ -160,7 +162,7 @@ struct Holdout {
 
 struct DeviceFrame;
 
-/// A frame begun by Renderer::submit(), which a thread of the renderer draws. A moved-from Frame may only be assigned to or destroyed.
+/// A frame begun by Renderer::submit(), which a thread of the renderer draws.
 class FREEVOXELS_API Frame {
  public:
   Frame(Frame&&) noexcept;
@@ -190,16 +192,18 @@ class FREEVOXELS_API Frame {
 /// and is made again only if a frame's scene changes it.
 class FREEVOXELS_API Renderer {
  public:
-  /// `scene` holds for every frame.
+  /// `scene` holds for every frame. Throws ErrorKind::Usage or Input for what is wrong in it, and OutOfMemory with what the volume needs.
   Renderer(const Context& context, Volume volume, std::string_view scene = "{}");
-  /// On the device of the keys "device" and "memory-limit", which this constructor opens unless it is open already.
+  /// The same on the device of the keys "device" and "memory-limit", which this constructor opens unless it is open already. Throws
+  /// ErrorKind::Device where none fits.
   explicit Renderer(Volume volume, std::string_view scene = "{}");
   /// Cancels the submitted frames that are not complete.
   ~Renderer();
   Renderer(Renderer&&) noexcept;
   Renderer& operator=(Renderer&&) noexcept;
 
-  /// Draws a frame and waits for it. The keys of `scene` override those of the renderer's scene for this frame.
+  /// Draws a frame and waits for it. The keys of `scene` override those of the renderer's scene for this frame. Throws ErrorKind::Usage or
+  /// Input for what is wrong in it, OutOfMemory with what the frame needs, and Device if the device is lost.
   Image render(std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {}, const Holdout& holdout = {});
   /// Draws frame `frame` of a full turn of `frames`, with the cameras and the light of `freevoxels turntable`: the eye is as far away in
   /// all of them as the farthest needs.
@@ -221,18 +225,18 @@ class FREEVOXELS_API Renderer {
   std::unique_ptr<State> state_;
 };
 
-/// The frames of a film: volumes whose file names differ in a number. They are seen as `freevoxels render 'smoke_####.vdb'` shows them: what
-/// the scene leaves open of camera, lights and scales is chosen for the film as a whole, for which the first image reads up to 12 frames.
-/// The scene has the keys of Volume::open and of Renderer, and
+/// The frames of a film: volumes whose file names differ in a number. They are seen as `freevoxels render 'smoke_####.vdb'` shows them:
+/// what the scene leaves open of camera, lights and scales is chosen for the film as a whole, for which the first image reads up to 12
+/// frames. The scene has the keys of Volume::open and of Renderer, and
 ///   "frames": "A-B:STEP", "A-B", "A-" or a number: which numbers of the files are drawn; else all;
 ///   "fixed-view": true: the view and the scales of the first frame that holds anything; false: each frame is seen by itself.
-/// Two volumes are never in memory at once. A moved-from Sequence may only be assigned to or destroyed.
+/// Two volumes are never in memory at once.
 class FREEVOXELS_API Sequence {
  public:
   /// `names` are patterns, in which a run of # (or %04d) stands for the number, and files; if there are none, the scene's key "volume".
   /// Fails with ErrorKind::Input where a pattern has no file. No file is read yet.
   Sequence(const Context& context, const std::vector<std::string>& names, std::string_view scene = "{}");
-  /// On the device of the keys "device" and "memory-limit".
+  /// The same on the device of the keys "device" and "memory-limit".
   explicit Sequence(const std::vector<std::string>& names, std::string_view scene = "{}");
   ~Sequence();
   Sequence(Sequence&&) noexcept;
@@ -254,7 +258,7 @@ class FREEVOXELS_API Sequence {
   std::vector<std::string> save(const std::vector<std::string>& images, std::string_view scene = "{}", bool skipExisting = false,
                                 const Progress& progress = {});
 
-  /// As those of Renderer, of the last complete frame.
+  /// The camera, the times and the device of the last complete frame, as Renderer has them.
   std::string camera() const;
   std::vector<std::pair<std::string, double>> timings() const;
   std::string device() const;
