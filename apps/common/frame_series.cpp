@@ -13,7 +13,6 @@
 #include "apps/common/output_options.h"
 #include "apps/common/share_group.h"
 #include "engine/cube_level.h"
-#include "engine/storage/baked_source.h"
 #include "engine/volume/content_hash.h"
 #include "engine/vulkan/pipeline.h"
 
@@ -176,9 +175,7 @@ void FrameSeries::agree(const Scene& view, const VolumeSource& source, const Fra
     for (const SceneVolume& added : view.added)
       report_.contentHash += contentHash(*known(added.source), added.classification, nullptr) + "-";
     report_.contentHash += contentHash(*view.volume, view.classification, hasEnvironment ? view.lighting->environment.get() : nullptr);
-    // The values of a file are not read yet: the header's checksum stands for those of all sections.
-    if (const auto* const baked = dynamic_cast<const BakedSource*>(&source))
-      report_.contentHash += fmt::format("-{:016x}", baked->file().header().hash);
+    if (const std::string checksum = source.checksum(); !checksum.empty()) report_.contentHash += "-" + checksum;
   }
   if (options_.drawsShares() && job.holdout) report_.contentHash += "-" + contentHash(*holdoutOf(job));
   if (options_.group == nullptr) return;

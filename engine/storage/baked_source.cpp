@@ -1,5 +1,6 @@
 #include "engine/storage/baked_source.h"
 
+#include <fmt/format.h>
 #include <tbb/parallel_for.h>
 
 #include <glm/gtc/matrix_transform.hpp>
@@ -81,6 +82,10 @@ void checkFitsInMemory(const FvxFile& file, std::uint64_t bricks, const char* re
 BakedSource::BakedSource(std::shared_ptr<const FvxFile> file, int finest) : file_(std::move(file)), finest_(finest) {
   FV_CHECK_LT(finest, file_->levels());
   for (int level = finest; level < file_->levels(); ++level) outlines_.push_back(bakedOutline(*file_, level));
+}
+
+std::string BakedSource::checksum() const {
+  return fmt::format("{:016x}", file_->header().hash);
 }
 
 SparseGrid<std::uint8_t> BakedSource::bricks(int level) const {

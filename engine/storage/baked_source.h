@@ -2,6 +2,7 @@
 // A baked volume whose levels of detail are read box by box, or as a whole.
 
 #include <memory>
+#include <string>
 #include <vector>
 
 #include "engine/storage/fvx_file.h"
@@ -22,6 +23,8 @@ class BakedSource : public VolumeSource {
   SparseGrid<std::uint8_t> bricks(int level) const override;
   Volume read(int level, const VoxelRange& box) const override;
   std::shared_ptr<const Volume> whole(const Progress& progress) const override;
+  /// The checksum of the header, which has those of all sections.
+  std::string checksum() const override;
 
  private:
   const std::shared_ptr<const fvx::FvxFile> file_;

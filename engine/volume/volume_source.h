@@ -5,6 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
+#include <string>
 
 #include "engine/core/stages.h"
 #include "engine/volume/sparse_grid.h"
@@ -38,6 +39,8 @@ class VolumeSource {
   /// Level 0 with its values. A file is read anew by each call; `progress` may abandon that. Fails as read() does, and with
   /// ErrorKind::OutOfMemory of the host.
   virtual std::shared_ptr<const Volume> whole(const Progress& progress = {}) const = 0;
+  /// A text that differs where the values of two files do, without reading them; empty for values in memory.
+  virtual std::string checksum() const { return {}; }
 };
 
 /// A volume in memory, of one level.
