@@ -213,22 +213,22 @@ Renderer::~Renderer() = default;
 Renderer::Renderer(Renderer&&) noexcept = default;
 Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 
-Image Renderer::render(std::string_view scene, bool withDepth, const Progress& progress, const Holdout& holdout) {
+Image Renderer::render(std::string_view scene, const FrameOptions& options) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(renderer.render(*renderer.read(parseScene(scene), holdoutOf(holdout)), {.depth = withDepth}, progress));
+    return imageOf(
+        renderer.render(*renderer.read(parseScene(scene), holdoutOf(options.holdout)), {.depth = options.depth}, options.progress));
   });
 }
 
-Image Renderer::renderTurn(int frame, int frames, std::string_view scene, bool withDepth, const Progress& progress,
-                           const Holdout& holdout) {
+Image Renderer::renderTurn(int frame, int frames, std::string_view scene, const FrameOptions& options) {
   return translated([&] {
     if (frames < 1 || frames > kMaximumFrames || frame < 0 || frame >= frames)
       fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames,
            Parameter("frames"), kMaximumFrames);
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(
-        renderer.renderTurn(*renderer.read(parseScene(scene), holdoutOf(holdout)), {frame, frames}, {.depth = withDepth}, progress));
+    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene), holdoutOf(options.holdout)), {frame, frames},
+                                       {.depth = options.depth}, options.progress));
   });
 }
 
@@ -236,16 +236,16 @@ std::string Renderer::camera() const {
   return state_->renderer.camera().dump();
 }
 
-Frame Renderer::submit(std::string_view scene, bool withDepth, Progress progress, const Holdout& holdout) {
+Frame Renderer::submit(std::string_view scene, const FrameOptions& options) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;
-    std::shared_ptr<const KeywordOptions> options = renderer.read(parseScene(scene), holdoutOf(holdout));
+    std::shared_ptr<const KeywordOptions> read = renderer.read(parseScene(scene), holdoutOf(options.holdout));
     auto frame = std::make_shared<SubmittedFrame>(
         renderer.context(),
-        [&renderer, options = std::move(options), withDepth](const freevoxels::Progress& report) {
-          return renderer.renderOnDevice(*options, withDepth, report);
+        [&renderer, read = std::move(read), depth = options.depth](const freevoxels::Progress& report) {
+          return renderer.renderOnDevice(*read, depth, report);
         },
-        std::move(progress));
+        options.progress);
     state_->queue.submit(frame);
     return Frame(std::unique_ptr<Frame::State>(new Frame::State{std::move(frame)}));
   });

@@ -68,11 +68,12 @@ std::vector<double> Sequence::numbers() const {
   return numbers;
 }
 
-Image Sequence::render(std::size_t frame, std::string_view scene, bool withDepth, const Progress& progress, const Holdout& holdout) {
+Image Sequence::render(std::size_t frame, std::string_view scene, const FrameOptions& options) {
   return translated([&] {
     if (frame >= size()) fail(freevoxels::ErrorKind::Usage, "there is no frame {}: the sequence has {}, numbered from 0", frame, size());
     SceneSequence& sequence = state_->sequence;
-    return imageOf(sequence.render(frame, *sequence.read(parseScene(scene), holdoutOf(holdout)), {.depth = withDepth}, progress));
+    return imageOf(
+        sequence.render(frame, *sequence.read(parseScene(scene), holdoutOf(options.holdout)), {.depth = options.depth}, options.progress));
   });
 }
 

@@ -62,11 +62,11 @@ class AdoptedDeviceTest : public ::testing::Test {
 
 TEST_F(AdoptedDeviceTest, DrawsWhatAnOwnDeviceDraws) {
   const v1::Volume volume = v1::Volume::open("procedural:cloud", R"({"resolution": 32})");
-  const v1::Image expected = v1::Renderer(volume, kSmall).render("{}", true);
+  const v1::Image expected = v1::Renderer(volume, kSmall).render("{}", {.depth = true});
   const v1::Context context = adopt();
   v1::Renderer renderer(context, volume, kSmall);
   EXPECT_EQ(context.device(), renderer.device());
-  const v1::Frame frame = renderer.submit("{}", true);
+  const v1::Frame frame = renderer.submit("{}", {.depth = true});
   const v1::Image image = frame.image();
   EXPECT_EQ(image.pixels, expected.pixels);
   EXPECT_EQ(image.depth, expected.depth);
@@ -74,7 +74,7 @@ TEST_F(AdoptedDeviceTest, DrawsWhatAnOwnDeviceDraws) {
 
 TEST_F(AdoptedDeviceTest, HandsOverTheImagesOfAFrame) {
   v1::Renderer renderer(adopt(), v1::Volume::open("procedural:cloud", R"({"resolution": 32})"), kSmall);
-  const v1::Frame frame = renderer.submit("{}", true), withoutDepth = renderer.submit();
+  const v1::Frame frame = renderer.submit("{}", {.depth = true}), withoutDepth = renderer.submit();
   const v1::DeviceFrame images = v1::deviceFrame(frame);
   EXPECT_EQ(images.color.format, VK_FORMAT_R32G32B32A32_SFLOAT);
   EXPECT_EQ(images.depth.format, VK_FORMAT_R32_SFLOAT);

@@ -32,7 +32,7 @@ const v1::Volume& cloud() {
 TEST(Library, HomogeneousBoxIsTheLawOfBeerAndLambert) {
   const std::vector<float> ones(20 * 20 * 12, 1.0f);
   v1::Renderer renderer(v1::Volume::copy(ones, {20, 20, 12}, {.spacing = {1.0, 1.0, 2.0}}), kAlongZ);
-  const v1::Image image = renderer.render(R"({"density-scale": 0.1, "unlit": true, "albedo": [0.8, 0.5, 0.2]})", true);
+  const v1::Image image = renderer.render(R"({"density-scale": 0.1, "unlit": true, "albedo": [0.8, 0.5, 0.2]})", {.depth = true});
   ASSERT_EQ(image.pixels.size(), 4u * 40u * 40u);
   ASSERT_EQ(image.depth.size(), 40u * 40u);
   const float* const middle = &image.pixels[4 * (20 + 40 * 20)];
@@ -49,14 +49,14 @@ TEST(Library, RaysEndAtTheDepthsOfAHoldout) {
   v1::Renderer renderer(v1::Volume::copy(ones, {20, 20, 12}, {.spacing = {1.0, 1.0, 2.0}}), kAlongZ);
   const std::string scene = R"({"density-scale": 0.1, "unlit": true})";
   std::vector<float> depths(40 * 40, 100.0f - 23.0f + 10.0f);  // 10 behind the first face
-  const v1::Image image = renderer.render(scene, false, {}, {40, 40, depths});
+  const v1::Image image = renderer.render(scene, {.holdout = {40, 40, depths}});
   EXPECT_NEAR(image.pixels[4 * (20 + 40 * 20) + 3], 1.0 - std::exp(-0.1 * 10), 2e-3);
-  EXPECT_EQ(renderer.submit(scene, false, {}, {40, 40, depths}).image().pixels, image.pixels);
+  EXPECT_EQ(renderer.submit(scene, {.holdout = {40, 40, depths}}).image().pixels, image.pixels);
   EXPECT_NEAR(renderer.render(scene).pixels[4 * (20 + 40 * 20) + 3], 1.0 - std::exp(-0.1 * 24), 2e-3);
-  expectRefused(v1::ErrorKind::Input, "40x39", [&] { renderer.render(scene, false, {}, {40, 39, depths}); });
-  expectRefused(v1::ErrorKind::Usage, "holdout", [&] { renderer.render(R"({"size": 9})", false, {}, {40, 40, depths}); });
+  expectRefused(v1::ErrorKind::Input, "40x39", [&] { renderer.render(scene, {.holdout = {40, 39, depths}}); });
+  expectRefused(v1::ErrorKind::Usage, "holdout", [&] { renderer.render(R"({"size": 9})", {.holdout = {40, 40, depths}}); });
   depths[7] = -1.0f;
-  expectRefused(v1::ErrorKind::Input, "pixel (7, 0)", [&] { renderer.render(scene, false, {}, {40, 40, depths}); });
+  expectRefused(v1::ErrorKind::Input, "pixel (7, 0)", [&] { renderer.render(scene, {.holdout = {40, 40, depths}}); });
 }
 
 TEST(Library, FramesOfOneRendererAreThoseOfSeparateOnes) {
@@ -103,7 +103,7 @@ TEST(Library, ThreadsMayDrawAtOnce) {
 
 TEST(Library, SavesWhatItDrew) {
   const test::TemporaryFolder folder;
-  const v1::Image image = v1::Renderer(cloud(), R"({"size": [48, 40]})").render("{}", true);
+  const v1::Image image = v1::Renderer(cloud(), R"({"size": [48, 40]})").render("{}", {.depth = true});
   v1::save(folder.path() / "a.png", image, R"({"background": [0.1, 0.2, 0.3]})");
   v1::save(folder.path() / "a.exr", image, R"({"float": true})");
   EXPECT_TRUE(std::filesystem::exists(folder.path() / "a.png"));
@@ -182,10 +182,11 @@ TEST(Library, ProgressOfAFrameNeverDecreasesAndEndsAtOne) {
   v1::Renderer renderer(cloud(), R"({"size": [600, 500]})");
   for (const char* scene : {"{}", R"({"draw": "splats"})", R"({"orbit": [3, 4]})"}) {
     double last = 0.0;
-    renderer.render(scene, false, [&](std::string_view, double fraction) {
+    const auto grows = [&](std::string_view, double fraction) {
       EXPECT_GE(fraction, last);
       last = fraction;
-    });
+    };
+    renderer.render(scene, {.progress = grows});
     EXPECT_EQ(last, 1.0) << scene;
   }
 }
@@ -267,12 +268,12 @@ TEST(Library, ErrorsNameWhatIsWrong) {
 TEST(Library, SubmittedFramesAreTheRenderedOnes) {
   const v1::Context context;
   v1::Renderer renderer(context, v1::Volume::open(context, "procedural:cloud", R"({"resolution": 32})"), R"({"size": [48, 40]})");
-  const v1::Frame first = renderer.submit(R"({"orbit": [90, 10]})"), second = renderer.submit("{}", true);
+  const v1::Frame first = renderer.submit(R"({"orbit": [90, 10]})"), second = renderer.submit("{}", {.depth = true});
   second.wait();
   EXPECT_TRUE(second.ready());
   EXPECT_TRUE(first.ready()) << "frames are drawn in the order of their submission";
   EXPECT_EQ(first.image().pixels, renderer.render(R"({"orbit": [90, 10]})").pixels);
-  const v1::Image image = second.image(), expected = renderer.render("{}", true);
+  const v1::Image image = second.image(), expected = renderer.render("{}", {.depth = true});
   EXPECT_EQ(image.pixels, expected.pixels);
   EXPECT_EQ(image.depth, expected.depth);
 }
@@ -351,7 +352,7 @@ TEST(Library, TheVersionIsThatOfTheHeaders) {
 TEST(Library, AnExceptionOfProgressReachesTheCaller) {
   struct Stopped {};
   v1::Renderer renderer(v1::Volume::open("procedural:cloud", R"({"resolution": 64})"), R"({"draw": "splats", "size": [900, 900]})");
-  EXPECT_THROW(renderer.render("{}", false, [](std::string_view, double) { throw Stopped{}; }), Stopped);
+  EXPECT_THROW(renderer.render("{}", {.progress = [](std::string_view, double) { throw Stopped{}; }}), Stopped);
   EXPECT_EQ(renderer.render(R"({"size": [40, 40]})").width, 40);
 }
 

@@ -57,7 +57,7 @@ TEST(Progress, TimingsAreThoseOfTheLastCompleteFrame) {
       EXPECT_EQ(!renderer.timings().empty(), any);
       EXPECT_TRUE(other.timings().empty());
     });
-    renderer.render(kSlowSplats, false, once.progress());
+    renderer.render(kSlowSplats, {.progress = once.progress()});
     EXPECT_TRUE(once.wasCalled());
     EXPECT_FALSE(renderer.timings().empty());
   };
@@ -71,12 +71,12 @@ TEST(Progress, AnotherRendererDrawsInTheMiddleOfAFrame) {
   for (const auto& [outer, inner] : {std::pair(kSlowSplats, kQuickFrame), {kSlowGather, kOtherSplats}}) {
     v1::Renderer first(context, oddCloud()), second(context, oddCloud());
     std::optional<v1::Image> image;
-    Once once([&, inner = inner] { image = second.render(inner, true); });
-    const v1::Image whole = first.render(outer, true, once.progress());
+    Once once([&, inner = inner] { image = second.render(inner, {.depth = true}); });
+    const v1::Image whole = first.render(outer, {.depth = true, .progress = once.progress()});
     ASSERT_TRUE(image) << outer;
-    const v1::Image alone = v1::Renderer(context, oddCloud()).render(inner, true);
+    const v1::Image alone = v1::Renderer(context, oddCloud()).render(inner, {.depth = true});
     EXPECT_TRUE(image->pixels == alone.pixels && image->depth == alone.depth) << inner;
-    EXPECT_TRUE(whole.pixels == v1::Renderer(context, oddCloud()).render(outer, true).pixels) << outer;
+    EXPECT_TRUE(whole.pixels == v1::Renderer(context, oddCloud()).render(outer, {.depth = true}).pixels) << outer;
   }
 }
 
@@ -84,7 +84,7 @@ TEST(Progress, RenderersMayBeMadeAndVolumesOpenedThere) {
   v1::Renderer renderer(oddCloud());
   v1::Image image;
   Once once([&] { image = v1::Renderer(v1::Volume::open("procedural:head", R"({"resolution": 24})"), kQuickFrame).render(); });
-  renderer.render(kSlowSplats, false, once.progress());
+  renderer.render(kSlowSplats, {.progress = once.progress()});
   EXPECT_EQ(image.width, 40);
 }
 
@@ -92,11 +92,11 @@ TEST(Progress, TheRendererItselfRefusesAnotherFrame) {
   v1::Renderer renderer(oddCloud()), second(oddCloud());
   const std::string sentence = "a renderer cannot draw a frame in the progress function of another of its frames";
   Once direct([&] { expectUsageError(sentence, [&] { renderer.render(kQuickFrame); }); });
-  renderer.render(kSlowSplats, false, direct.progress());
+  renderer.render(kSlowSplats, {.progress = direct.progress()});
   EXPECT_TRUE(direct.wasCalled());
   Once inner([&] { expectUsageError(sentence, [&] { renderer.render(kQuickFrame); }); });
-  Once around([&] { second.render(kSlowSplats, false, inner.progress()); });
-  renderer.render(kSlowSplats, false, around.progress());
+  Once around([&] { second.render(kSlowSplats, {.progress = inner.progress()}); });
+  renderer.render(kSlowSplats, {.progress = around.progress()});
   EXPECT_TRUE(inner.wasCalled());
   EXPECT_EQ(renderer.render(kQuickFrame).width, 40);
 }
@@ -112,7 +112,7 @@ TEST(Progress, FramesAreSubmittedThereAndWaitedForAfterwards) {
       expectUsageError("cannot be waited for in a progress function", [&] { frame->image(); });
     }
   });
-  renderer.render(kSlowSplats, false, once.progress());
+  renderer.render(kSlowSplats, {.progress = once.progress()});
   ASSERT_TRUE(own && others);
   EXPECT_TRUE(own->image().pixels == others->image().pixels);
 }
@@ -130,7 +130,7 @@ TEST(Progress, OfASubmittedFrameMayDoTheSame) {
     expectUsageError("cannot be waited for in a progress function", [&] { frame->wait(); });
     expectUsageError("a renderer cannot draw", [&] { renderer.render(kQuickFrame); });
   });
-  frame.emplace(renderer.submit(kSlowSplats, false, once.progress()));
+  frame.emplace(renderer.submit(kSlowSplats, {.progress = once.progress()}));
   isSet = true;
   frame->wait();
   EXPECT_TRUE(once.wasCalled());
@@ -144,7 +144,7 @@ TEST(Progress, ARendererWithFramesThatWaitMayBeDestroyedThere) {
     waiting.emplace(second.submit(kQuickFrame));
     std::this_thread::sleep_for(std::chrono::milliseconds(100));  // so that its thread waits for the turn
   });
-  renderer.render(kSlowSplats, false, once.progress());
+  renderer.render(kSlowSplats, {.progress = once.progress()});
   ASSERT_TRUE(waiting);
   EXPECT_THROW(waiting->wait(), v1::Error);
 }
@@ -165,7 +165,7 @@ TEST(Progress, ThreadsThatWouldWaitForEachOthersDeviceAreTold) {
         ++refused;
       }
     });
-    renderer.render(kSlowSplats, false, once.progress());
+    renderer.render(kSlowSplats, {.progress = once.progress()});
   };
   {
     const std::jthread one([&] { draw(contexts[0], contexts[1]); }), another([&] { draw(contexts[1], contexts[0]); });
@@ -179,7 +179,7 @@ TEST(Progress, OtherThreadsDrawAfterwards) {
   v1::Image image;
   std::jthread thread;
   Once once([&] { thread = std::jthread([&] { image = second.render(kQuickFrame); }); });
-  renderer.render(kSlowSplats, false, once.progress());
+  renderer.render(kSlowSplats, {.progress = once.progress()});
   thread.join();
   EXPECT_EQ(image.width, 40);
 }

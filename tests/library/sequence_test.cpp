@@ -62,7 +62,7 @@ TEST_F(SequenceTest, SaysWhatItKnows) {
   ASSERT_EQ(sequence.warnings().size(), 1u);
   EXPECT_NE(sequence.warnings().front().find("has no file of frame 3"), std::string::npos);
   EXPECT_TRUE(sequence.remarks().empty());
-  const v1::Image image = sequence.render(0, R"({"orbit": [10, 20]})", true);
+  const v1::Image image = sequence.render(0, R"({"orbit": [10, 20]})", {.depth = true});
   EXPECT_EQ(image.depth.size(), 32u * 24u);
   EXPECT_FALSE(sequence.timings().empty());
   EXPECT_FALSE(sequence.device().empty());
@@ -71,7 +71,7 @@ TEST_F(SequenceTest, SaysWhatItKnows) {
             std::string::npos)
       << sequence.remarks().front();
   // What the frame before showed is shown again by its camera.
-  EXPECT_EQ(sequence.render(0, sequence.camera(), true).pixels, image.pixels);
+  EXPECT_EQ(sequence.render(0, sequence.camera(), {.depth = true}).pixels, image.pixels);
 }
 
 TEST_F(SequenceTest, EmptyAndDamagedFramesAreThoseOfTheCommandLine) {
@@ -88,17 +88,18 @@ TEST_F(SequenceTest, ProgressGrowsAndAbandons) {
   v1::Context context;
   v1::Sequence sequence(context, {path("f_1.vdb"), path("f_4.vdb")}, R"({"size": [32, 24]})");
   double before = 0.0;
-  const v1::Image whole = sequence.render(1, "{}", false, [&](std::string_view, double fraction) {
+  const auto grows = [&](std::string_view, double fraction) {
     EXPECT_GE(fraction, before);
     before = fraction;
-  });
+  };
+  const v1::Image whole = sequence.render(1, "{}", {.progress = grows});
   EXPECT_EQ(before, 1.0);
   for (const int calls : {0, 1}) {
     v1::Sequence fresh(context, {path("f_1.vdb"), path("f_4.vdb")}, R"({"size": [32, 24]})");
     const auto abandon = [left = calls](std::string_view, double) mutable {
       if (left-- == 0) throw std::runtime_error("abandoned");
     };
-    EXPECT_THROW(fresh.render(1, "{}", false, abandon), std::runtime_error);
+    EXPECT_THROW(fresh.render(1, "{}", {.progress = abandon}), std::runtime_error);
     const v1::Sequence moved = std::move(fresh);
     EXPECT_EQ(moved.camera(), "{}");
     fresh = v1::Sequence(context, {path("f_1.vdb"), path("f_4.vdb")}, R"({"size": [32, 24]})");

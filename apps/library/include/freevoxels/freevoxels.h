@@ -160,6 +160,13 @@ struct Holdout {
   std::span<const float> depths = {};
 };
 
+/// What a frame is drawn with besides its scene.
+struct FrameOptions {
+  bool depth = false;  ///< whether Image::depth is made
+  Progress progress = {};
+  Holdout holdout = {};
+};
+
 struct DeviceFrame;
 
 /// A frame begun by Renderer::submit(), which a thread of the renderer draws.
@@ -204,14 +211,13 @@ class FREEVOXELS_API Renderer {
 
   /// Draws a frame and waits for it. The keys of `scene` override those of the renderer's scene for this frame. Throws ErrorKind::Usage or
   /// Input for what is wrong in it, OutOfMemory with what the frame needs, and Device if the device is lost.
-  Image render(std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {}, const Holdout& holdout = {});
+  Image render(std::string_view scene = "{}", const FrameOptions& options = {});
   /// Draws frame `frame` of a full turn of `frames`, with the cameras and the light of `freevoxels turntable`: the eye is as far away in
   /// all of them as the farthest needs.
-  Image renderTurn(int frame, int frames, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {},
-                   const Holdout& holdout = {});
+  Image renderTurn(int frame, int frames, std::string_view scene = "{}", const FrameOptions& options = {});
   /// Begins the same frame as render() and returns at once. Frames of a renderer are drawn in the order in which they were submitted.
   /// Throws for errors of `scene`; Frame::wait() throws those of drawing.
-  Frame submit(std::string_view scene = "{}", bool withDepth = false, Progress progress = {}, const Holdout& holdout = {});
+  Frame submit(std::string_view scene = "{}", const FrameOptions& options = {});
 
   /// The camera of the last complete frame, as the text of a scene that gives it. "{}" before the first frame.
   std::string camera() const;
@@ -249,8 +255,7 @@ class FREEVOXELS_API Sequence {
   /// Draws a frame, from 0 to size() - 1, and waits for it. `scene` as for Renderer::render(): its "orbit" moves the eye about the film's
   /// look-at point. The frame drawn last stays in memory. In a film of several, one that holds nothing is transparent everywhere; a file
   /// that cannot be read fails with ErrorKind::Input, and other frames may be drawn afterwards.
-  Image render(std::size_t frame, std::string_view scene = "{}", bool withDepth = false, const Progress& progress = {},
-               const Holdout& holdout = {});
+  Image render(std::size_t frame, std::string_view scene = "{}", const FrameOptions& options = {});
   /// Draws all frames and writes each, when it is complete, into one file for each of `images`, in whose name a run of # stands for the
   /// number. `scene` is as for freevoxels::v1::save(), and "aov" adds channels to an .exr. `skipExisting`: frames whose files exist are left
   /// as they are. Files that cannot be read are left out; ErrorKind::Input is thrown at the end. Returns the names of the images. The
