@@ -86,6 +86,7 @@ void Viewer::open(const std::string& file) {
 /// A volume or a scene that makes an image on its own: it is remembered when there is one.
 void Viewer::opened(const std::string& file) {
   opened_ = file;
+  openedVolume_ = state_.scene.input.volume;
   thumbnailOf_ = proceduralName(file) ? file : std::filesystem::absolute(file).lexically_normal().string();
   state_.bookmarks = store_.bookmarks(state_.scene.input.volume);
 }
@@ -185,6 +186,25 @@ void Viewer::drawSidePanel(float top, float width, float height) {
   ImGui::End();
 }
 
+/// Whether the opened file has made no image yet, so that there is none or an older one.
+bool Viewer::isOpening() const {
+  if (opened_.empty() || state_.scene.input.volume != openedVolume_) return false;
+  return !state_.latest || state_.latest->request.scene.input.volume != openedVolume_;
+}
+
+/// Dims the older image, and says why there is no newer one.
+void Viewer::drawOpening() const {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (state_.latest) list.AddRectFilled(low, high, IM_COL32(24, 24, 26, 190));
+  std::string text = state_.problem;
+  if (const auto activity = director_.activity(); activity && text.empty()) text = activity->first;
+  const float wrap = 0.8f * (high.x - low.x);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  const ImVec2 place(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y));
+  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), place, IM_COL32(235, 235, 238, 255), text.c_str(), nullptr, wrap);
+}
+
 void Viewer::drawImage(float left, float width, float top, float height) {
   beginPart("image", {left, top}, {width, height}, {0.0f, 0.0f}, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   const std::chrono::duration<float> since = Clock::now() - shown_;
@@ -192,6 +212,7 @@ void Viewer::drawImage(float left, float width, float top, float height) {
                       .before = fades() ? before_.get() : nullptr,
                       .compared = comparedTexture_.get(),
                       .weight = since / std::chrono::duration<float>(kFade)});
+  if (isOpening()) drawOpening();
   if (state_.overlays.slices) slices_.drawOutlines(state_, {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()});
   if (!options_.screenshot && !store_.knowsHowToTurn() && state_.camera) drawTurnHint();
   ImGui::End();
@@ -304,17 +325,12 @@ void Viewer::writeScreenshot() const {
   writePngTexels(*options_.screenshot, swapchain_.size(), swapchain_.read());
 }
 
-/// The first complete image of an opened file.
+/// Remembers the opened file, and its first complete image as its thumbnail.
 void Viewer::rememberOpened() {
-  if (!opened_.empty() && director_.isComplete(state_)) {
-    if (isWorthRemembering(opened_)) store_.remember(opened_);
-    opened_.clear();
-  }
-  if (!state_.problem.empty()) {  // no image of what was opened last will come
-    opened_.clear();
-    thumbnailOf_.clear();
-  }
-  if (thumbnailOf_.empty() || !director_.isComplete(state_) || fades() || options_.screenshot) return;
+  if (!director_.isComplete(state_) || state_.scene.input.volume != openedVolume_) return;
+  if (!opened_.empty() && isWorthRemembering(opened_)) store_.remember(opened_);
+  opened_.clear();
+  if (thumbnailOf_.empty() || fades() || options_.screenshot) return;
   store_.storeThumbnail(thumbnailOf_, downloadImage(*device_, *state_.whole->image), state_.scene.output.look());
   thumbnailOf_.clear();
 }
@@ -341,7 +357,8 @@ void Viewer::run() {
   while (!window_.wantsToClose()) {
     Window::waitForEvents(patience());
     for (const std::string& file : window_.takeDropped()) open(file);
-    if (title != titleOf(state_)) window_.setTitle(title = titleOf(state_));
+    // The title names what is shown.
+    if ((title.empty() || !isOpening()) && title != titleOf(state_)) window_.setTitle(title = titleOf(state_));
     takeImages();
     drawFrame();
     director_.ask(state_, area_.pixels(), area_.moves() || volume_.frames().plays());

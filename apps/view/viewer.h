@@ -55,6 +55,8 @@ class Viewer {
   void open(const std::string& file);
   void opened(const std::string& file);
   void rememberOpened();
+  bool isOpening() const;
+  void drawOpening() const;
   void storeLastScene();
   double patience() const;
   void writeScreenshot() const;
@@ -84,7 +86,8 @@ class Viewer {
   float panelWidth_;
   bool showsPanel_ = true, showsKeys_ = false;
   std::optional<Action> chosen_;       ///< in the menus
-  std::string opened_;                 ///< the opened file that has made no image yet
+  std::string openedVolume_;           ///< the volume that the last opened file names
+  std::string opened_;                 ///< that file, until its image is complete
   std::string thumbnailOf_;            ///< the opened file that has no thumbnail yet
   bool edited_ = false;                ///< in the last frame
   Clock::time_point lastEdit_, painted_, shown_;
