@@ -13,7 +13,7 @@ packages=(
   glslang-tools spirv-tools
   libglm-dev libfmt-dev libspdlog-dev nlohmann-json3-dev libcli11-dev
   libopenexr-dev libpng-dev libjpeg62-turbo-dev
-  libglfw3-dev libimgui-dev fonts-dejavu-core
+  libglfw3-dev libimgui-dev fonts-dejavu-core libstb-dev
   libopenvdb-dev libtbb-dev libboost-iostreams-dev # OpenVDB's headers and CMake module need the last
   liblog4cplus-dev # turns the messages of OpenVDB off
   libxxhash-dev libzstd-dev libblosc-dev zlib1g-dev

@@ -99,7 +99,7 @@ class Survey {
   explicit Survey(const SceneDescription& description) : description_(description) {}
 
   void add(const std::string& input, std::shared_ptr<Volume> volume) {
-    const bool burns = volume->temperature && !description_.method.isProjected() && description_.emission.mayShine(*volume->temperature);
+    const bool burns = volume->temperature && !description_.method.showsValues() && description_.emission.mayShine(*volume->temperature);
     const double mass = massOf(*volume), power = burns ? powerOf(*volume) : 0.0;
     SceneDescription own = description_;
     if (!volume->temperature && !volume->classification) own.emission = {.emission = false};
@@ -124,7 +124,7 @@ class Survey {
     FilmView view{.scene = {.volume = largest_.volume}, .largest = largest_.input, .brightest = ""};
     Classification& classification = view.scene.classification;
     const std::optional<Emission> emission = volume.classification ? std::nullopt : emissionScales();
-    classification = volume.classification || description_.method.isProjected()
+    classification = volume.classification || description_.method.showsValues()
                          ? description_.resolveClassification(volume)
                          : description_.classification.resolve(volume, emission.has_value());
     if (emission) {
@@ -134,10 +134,11 @@ class Survey {
         classification.emission->strength = automaticEmissionStrength(*brightest_.volume, classification, *emission);
       if (!description_.classification.albedo) classification.albedo = glm::vec3(kSmokeAlbedo);
     }
-    view.scene.camera = description_.camera
-                            .resolve(
-                                volume.up, [&] { return subjectOf(corners); }, 1)
-                            .front();
+    view.scene.camera = description_.method.slice ? sliceCameraOf(description_, volume)
+                                                  : description_.camera
+                                                        .resolve(
+                                                            volume.up, [&] { return subjectOf(corners); }, 1)
+                                                        .front();
     view.scene.lighting = description_.resolveLighting(volume, classification, view.scene.camera);
     forgetVoxels();
     return view;

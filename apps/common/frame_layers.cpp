@@ -64,4 +64,8 @@ Image renderFrame(Renderer& renderer, const Device& device, const SceneDescripti
   return image;
 }
 
+Image renderSlice(const Volume& volume, const Scene& scene, glm::ivec2 size) {
+  return drawSlice(volume, scene.classification, slicePixels(volume, scene.camera, size), size);
+}
+
 }  // namespace freevoxels

@@ -15,4 +15,7 @@ namespace freevoxels {
 Image renderFrame(Renderer& renderer, const Device& device, const SceneDescription& description, const Scene& scene,
                   const FrameSettings& settings, const Aovs& aovs, const Progress& progress);
 
+/// The slice that the camera of a scene sees (sliceCameraOf). `volume` has the values of that of the scene.
+Image renderSlice(const Volume& volume, const Scene& scene, glm::ivec2 size);
+
 }  // namespace freevoxels

@@ -25,7 +25,8 @@ bool isTransparent(const Renderer& renderer) {
   return renderer.occupiedVoxelCount() == 0u;
 }
 
-std::string whyNothingIsSeen(bool isTransparent) {
+std::string whyNothingIsSeen(bool isTransparent, bool isSlice) {
+  if (isSlice) return "the plane meets no voxel with data; choose another --slice";
   if (isTransparent) return "all voxels are transparent; raise --density-scale, or change --transfer-function";
   return "the camera looks past the volume, or what it sees is transparent or behind --holdout; leave out --camera-position and --look-at "
          "to frame it";
@@ -120,6 +121,10 @@ bool FrameSeries::drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs
       return true;
     }
     const VolumeView view = beginVolume(source, jobs);
+    if (options_.scene.description.method.slice) {
+      drawSliceOf(*source, view, jobs);
+      return true;
+    }
     Renderer renderer(device_, view.scene.volumes(source), options_.scene.description.method.table(), progress_.progress());
     drawFrames(renderer, view, jobs);
     return true;
@@ -220,6 +225,20 @@ void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::sp
   for (const FrameJob* empty : std::exchange(emptyFramesToWrite_, {})) writeEmpty(*empty);
 }
 
+/// Draws a slice, which needs no device.
+void FrameSeries::drawSliceOf(const VolumeSource& source, const VolumeView& view, std::span<const FrameJob> jobs) {
+  const std::shared_ptr<const Volume> volume = source.whole(progress_.progress());
+  for (const FrameJob& job : jobs) {
+    if (!job.isSkipped) {
+      const StageTimer timer(report_.stages, "draw slice");
+      complete(renderSlice(*volume, view.scene, options_.scene.description.camera.size), false, view.scene, job);
+    }
+    ++progress_.drawn;
+  }
+  report_.voxels = volume->voxelCount();
+  for (const FrameJob* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
+}
+
 /// What ends the rays of a frame; null if nothing does. Neighbouring frames of one image read it once.
 const std::shared_ptr<const Holdout>& FrameSeries::holdoutOf(const FrameJob& job) {
   if (job.holdout == holdoutFile_) return holdout_;
@@ -266,7 +285,8 @@ void FrameSeries::complete(Image image, bool isTransparent, const Scene& view, c
   const std::string name = progress_.frames() == 1 ? "" : job.files.front() + ": ";
   progress_.erase();
   if (const std::string cleared = clearPixelsThatAreNoNumbers(image); !cleared.empty()) spdlog::warn("{}{}", name, cleared);
-  if (showsNothing(image)) spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(isTransparent));
+  if (showsNothing(image))
+    spdlog::warn("{}nothing is seen: {}", name, whyNothingIsSeen(isTransparent, options_.scene.description.method.slice.has_value()));
   writer_.write(std::move(image), view, job);
 }
 

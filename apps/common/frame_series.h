@@ -55,6 +55,7 @@ class FrameSeries {
   void surveyFilm();
   bool drawNext(VolumesAhead& volumes, std::span<const FrameJob> jobs);
   void drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs);
+  void drawSliceOf(const VolumeSource& source, const VolumeView& view, std::span<const FrameJob> jobs);
   void drawShares(Renderer& renderer, const Scene& view, const FrameSettings& settings, const FrameJob& job);
   const std::shared_ptr<const Holdout>& holdoutOf(const FrameJob& job);
 

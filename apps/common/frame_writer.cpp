@@ -9,8 +9,8 @@ namespace freevoxels {
 void FrameWriter::write(Image image, const Scene& view, const FrameJob& job) {
   progress_.begin("writing " + job.files.front());
   finish();
-  writer_.start([&scene = options_.scene.description, files = job.files, image = std::move(image), view, options = describe(view, job),
-                 facts = facts()] { writeImages(image, scene, files, view, "render", options, facts); });
+  writer_.start([scene = options_.scene.description.of(job.input), files = job.files, image = std::move(image), view,
+                 options = describe(view, job), facts = facts()] { writeImages(image, scene, files, view, "render", options, facts); });
   written_ = &job;
 }
 

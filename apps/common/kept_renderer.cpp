@@ -25,6 +25,7 @@ Renderer& KeptRenderer::get(const std::shared_ptr<const VolumeSource>& source, c
 }
 
 std::vector<StageTime> KeptRenderer::takeTimings() {
+  if (!renderer_) return {};
   return std::exchange(isNew_, false) ? renderer_->timings() : renderer_->frameTimings();
 }
 

@@ -30,7 +30,7 @@ class KeptRenderer {
   }
   /// Leaves what is on the device as it is, in a forked process, which cannot free it.
   void abandon() { (void)renderer_.release(); }
-  /// The times of the last frame: with those of what the renderer was made of, for its first frame.
+  /// The times of the last frame: with those of what the renderer was made of, for its first frame; none without one.
   std::vector<StageTime> takeTimings();
 
  private:

@@ -142,6 +142,14 @@ const std::vector<OptionHelp> kMethodHelp{
      "What a ray shows: the volume as a medium, or, without light, its values: the largest on its way (mip, maximum intensity projection) "
      "or their mean (average), with colour and opacity of the transfer function [volume; of mip and average that is a white ramp]",
      true},
+    {"slice",
+     "Draws a slice in place of a view: the values on the plane across the axis x, y or z of the world at a position in world units, or in "
+     "per cent of the volume's box (z:50%), in the colours of the transfer function [grey over the usual values]",
+     true},
+    {"annotate",
+     "Draws bars over the image: the colours of the transfer function with their values and, where the image is a slice or orthographic, "
+     "a length of the world",
+     true},
     {"composite",
      "How splats become pixels: colours mixed by the table with exact opacity, the paper's plain sum, or back-to-front alpha "
      "blending for comparison [normalised]",

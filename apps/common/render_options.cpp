@@ -66,7 +66,12 @@ void RenderOptions::checkShares(std::span<const FrameJob> frames) const {
   shares.check();
   if (drawsShares() && scene.description.output.aovs.hasLayers())
     fail(ErrorKind::Usage, "{} are made of whole frames, which processes do not share: draw them by one", Parameter("aov", "lights"));
+  if (drawsShares() && scene.description.method.slice)
+    fail(ErrorKind::Usage, "a slice is drawn by one process, at once: leave {} out, or draw it with 'freevoxels render'",
+         Parameter("slice"));
   if (!shares.sums) return;
+  if (scene.description.method.annotate)
+    fail(ErrorKind::Usage, "{} draws over an image, and --sums writes a part of one: leave it out", Parameter("annotate"));
   for (const FrameJob& frame : frames)
     if (frame.files.size() != 1 || !isExr(frame.files.front())) fail(ErrorKind::Usage, "--sums writes a single file: name one .exr as OUT");
   if (scene.description.output.fullFloat) fail(ErrorKind::Usage, "--float has no effect on --sums, which lose no bit: leave it out");

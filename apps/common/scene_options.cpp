@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <iterator>
 
+#include "apps/common/annotation.h"
 #include "apps/common/failure.h"
 #include "apps/common/option_help.h"
 #include "apps/common/program.h"
@@ -210,7 +211,7 @@ void logRemarks(const SceneDescription& description, const Scene& scene) {
   logWarnings(volume, !scene.classification.transferFunction);
   logAssumptions(volume);
   const ClassificationDescription& given = description.classification;
-  const bool isChosen = given.transferFunction || given.window || given.iso || description.method.isProjected();
+  const bool isChosen = given.transferFunction || given.window || given.iso || description.method.showsValues();
   if (scene.classification.transferFunction && !isChosen && !volume.classification)
     spdlog::info(
         "{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
@@ -222,6 +223,11 @@ void logRemarks(const SceneDescription& description, const Scene& scene) {
     spdlog::warn("values of '{}' below 0 count as 0: {} of them", *description.lighting.environment,
                  scene.lighting->environment->negativeValues);
   warnOfTemperatures(volume, scene.classification);
+  if (description.method.annotate && !canAnnotate(description, scene))
+    spdlog::warn(
+        "--annotate has nothing to draw: {} is shown without a transfer function, and lengths are exact only with --orthographic and "
+        "--slice",
+        volume.source);
 }
 
 ExrOptions imageHeader(const SceneDescription& description, const Scene& scene, const std::string& command, const OptionList& options,
@@ -236,6 +242,7 @@ ExrOptions imageHeader(const SceneDescription& description, const Scene& scene, 
 void writeImages(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
                  const std::string& command, const OptionList& options, std::map<std::string, std::string> facts) {
   addChannels(image, description.output.aovs, scene.camera);
+  annotate(image, description, scene);
   writeImages(image, description.output, files, imageHeader(description, scene, command, options, std::move(facts)));
 }
 

@@ -3,6 +3,7 @@
 #include <functional>
 #include <utility>
 
+#include "apps/common/annotation.h"
 #include "apps/common/frame_layers.h"
 #include "apps/common/frame_view.h"
 #include "apps/common/output_options.h"
@@ -123,6 +124,17 @@ SceneRenderer::~SceneRenderer() {
 /// Resolves scene_ as the film is seen, but for what the frame gives itself.
 void SceneRenderer::resolveLikeFilm(const SceneDescription& description) {
   scene_ = description.resolveLike(filmWith(*film_, own_, description), scene_.volume);
+  if (!description.method.slice) return;
+  scene_.camera = sliceCameraOf(description, *film_->volume);
+  if (!own_.method.slice) scene_.classification = description.resolveClassification(*scene_.volume);
+}
+
+/// Resolves scene_ for a frame, as a part of the film if there is one.
+void SceneRenderer::prepare(const KeywordOptions& options, std::optional<TurnStep> step, const Progress& progress) {
+  takeSource(options.scene, step ? step->frames : 1, progress);
+  if (film_) return resolveLikeFilm(options.scene);
+  classify(options.scene);
+  resolveView(options.scene, step);
 }
 
 /// Resolves camera and light of scene_.
@@ -139,7 +151,7 @@ void SceneRenderer::resolveView(const SceneDescription& description, std::option
   own.camera.holdout = given.holdout;
   if (!given.position) own.camera.position.reset();  // an orbit has replaced it
   own.resolveView(scene_);
-  if (given == own.camera) return;
+  if (given == own.camera || description.method.slice) return;
   const glm::dvec2 ownAngles = own.camera.angles();
   const bool isMoved = !given.position && given.angles() != ownAngles;
   own.camera = given;
@@ -167,7 +179,9 @@ void SceneRenderer::classify(const SceneDescription& description) {
   const std::string added = description.added.empty() ? "" : textOf(description, {"volumes", "light"});
   if (added != added_) scene_.added = openAddedVolumes(description);
   added_ = added;
-  const std::string classification = textOf(description, {"classification", "emission"});
+  const MethodDescription& method = description.method;
+  const std::string classification = fmt::format("{}{} {}", textOf(description, {"classification", "emission"}),
+                                                 int(method.mode.value_or(IntensityProjection::None)), method.slice.has_value());
   if (classification == classification_) return;
   scene_.classification = description.resolveClassification(*scene_.volume);
   classification_ = classification;
@@ -189,13 +203,7 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
   FrameSettings settings = frameSettings(description, depth);
   checkFrameFits(*context_->device, settings);
   settings.holdout = options.holdout ? options.holdout : readHoldoutOf(description.camera, step);
-  takeSource(description, step ? step->frames : 1, whole);
-  if (film_) {
-    resolveLikeFilm(description);
-  } else {
-    classify(description);
-    resolveView(description, step);
-  }
+  prepare(options, step, whole);
   settings.lighting = scene_.lighting;
   auto drawn = std::invoke(work, kept_.get(source_, description, scene_, whole), scene_.camera, settings, whole);
   if (progress) progress("complete", 1.0);
@@ -203,8 +211,27 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
   return drawn;
 }
 
+/// Draws a slice, which needs no device.
+Image SceneRenderer::drawSlice(const KeywordOptions& options, const Aovs& channels, const Progress& progress) {
+  refuseInsideValidationLog();
+  const FrameTurn turn(context_->turns, isDrawing_);
+  const Progress whole = wholeProgress(progress);
+  SceneDescription description = options.scene;
+  description.output.aovs = channels;
+  description.check();
+  description.input = volume_->input();
+  prepare(options, std::nullopt, whole);
+  Image image = renderSlice(*source_->whole(whole), scene_, description.camera.size);
+  annotate(image, description, scene_);
+  if (progress) progress("complete", 1.0);
+  complete(description.camera.size);
+  return image;
+}
+
 Image SceneRenderer::drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels,
                                const Progress& progress) {
+  if (step) refuseTurnOfSlice(options.scene);
+  if (options.scene.method.slice) return drawSlice(options, channels, progress);
   const auto work = [&](Renderer& renderer, const Camera& camera, const FrameSettings& settings, const Progress& report) {
     Scene seen = scene_;
     seen.camera = camera;
@@ -212,6 +239,7 @@ Image SceneRenderer::drawImage(const KeywordOptions& options, std::optional<Turn
     description.input = volume_->input();
     Image image = renderFrame(renderer, *context_->device, description, seen, settings, channels, report);
     addChannels(image, channels, camera);
+    annotate(image, description, seen);
     return image;
   };
   return draw(options, step, channels.needDepth(), progress, work);
@@ -226,6 +254,9 @@ Image SceneRenderer::renderTurn(const KeywordOptions& options, TurnStep step, co
 }
 
 std::shared_ptr<const FrameTargets> SceneRenderer::renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress) {
+  if (options.scene.method.slice || options.scene.method.annotate)
+    fail(ErrorKind::Usage, "{} is drawn in the memory of the host: render the image there",
+         Parameter(options.scene.method.slice ? "slice" : "annotate"));
   return draw(options, std::nullopt, depth, progress, &Renderer::renderOnDevice);
 }
 

@@ -80,6 +80,8 @@ class SceneRenderer {
  private:
   Image drawImage(const KeywordOptions& options, std::optional<TurnStep> step, const Aovs& channels, const Progress& progress);
   /// Prepares a frame and returns what `work`, a drawing function of Renderer, makes of it.
+  void prepare(const KeywordOptions& options, std::optional<TurnStep> step, const Progress& progress);
+  Image drawSlice(const KeywordOptions& options, const Aovs& channels, const Progress& progress);
   template <typename Work>
   auto draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress, const Work& work);
   void takeSource(const SceneDescription& description, int frames, const Progress& progress);

@@ -41,6 +41,7 @@ void TurntableCommand::add(CLI::App& app) {
     if (ranksPerFrame_) options_.group->splitFrames(*ranksPerFrame_);
     options_.scene.takeScene("_####.png");
     const SceneDescription& scene = options_.scene.description;
+    refuseTurnOfSlice(scene);
     std::vector<FrameJob> frames(std::size_t(scene.camera.frames.value_or(kDefaultFrames)), {.input = scene.input.volume, .files = {}});
     for (std::size_t i = 0; i < frames.size(); ++i) {
       for (const std::string& pattern : options_.scene.files) frames[i].files.push_back(frameName(pattern, int(i)));

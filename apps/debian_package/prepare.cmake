@@ -7,7 +7,7 @@ foreach(tool dpkg-shlibdeps file)  # without them CPack would leave out the depe
 endforeach()
 
 # Libraries that are compiled into the programs, whose licences ask for their notices; the packages of others bring their own.
-set(compiled_in libcli11-dev libglm-dev libimgui-dev libvulkan-volk-dev nlohmann-json3-dev pybind11-dev)
+set(compiled_in fonts-dejavu-core libcli11-dev libglm-dev libimgui-dev libvulkan-volk-dev nlohmann-json3-dev pybind11-dev)
 set(notices ${CPACK_TEMPORARY_INSTALL_DIRECTORY}/freevoxels/usr/share/doc/freevoxels/third_party_notes)
 foreach(library IN LISTS compiled_in)
   file(COPY_FILE /usr/share/doc/${library}/copyright ${notices}/${library}.copyright)

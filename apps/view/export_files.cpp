@@ -13,6 +13,7 @@
 #include <sstream>
 #include <vector>
 
+#include "apps/common/annotation.h"
 #include "apps/common/background_writer.h"
 #include "apps/common/frame_names.h"
 #include "apps/common/program.h"
@@ -143,7 +144,9 @@ bool canCopyImages() {
 }
 
 void copyImage(const Device& device, const DrawnImage& drawn) {
-  const TemporaryFile png(encodePng(downloadImage(device, *drawn.image), drawn.request.scene.output.look()));
+  Image image = downloadImage(device, *drawn.image);
+  annotate(image, drawn.request.scene, drawn.scene);
+  const TemporaryFile png(encodePng(image, drawn.request.scene.output.look()));
   const std::vector<std::string> command = clipboardCommand();
   std::vector<char*> words;
   for (const std::string& word : command) words.push_back(const_cast<char*>(word.c_str()));

@@ -91,6 +91,9 @@ void ExportPanel::draw(ViewState& state) {
   ImGui::SameLine();
   if (ImGui::Button("Copy command", {half, 0.0f})) copyCommand(state);
   hint("Copies the command line that renders this image (Ctrl+Shift+C)");
+  if (tick("Colour bar and scale bar", state.scene.method.annotate)) state.changed = true;
+  hint("Over the images that are saved and copied: the colours of the transfer function with their values, and a length where it is exact",
+       "--annotate");
   OutputDescription& output = state.scene.output;
   if (ImGui::TreeNode("Turntable")) {
     ImGui::InputInt(beginRow("Frames"), &turnFrames_, 1, 10);

@@ -7,6 +7,9 @@
 #include <cmath>
 
 #include "apps/view/ui_painter.h"
+#include "engine/core/error.h"
+#include "engine/description/scene_fields.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -14,11 +17,16 @@ namespace {
 
 constexpr std::array kColors{IM_COL32(224, 96, 88, 255), IM_COL32(124, 196, 96, 255), IM_COL32(92, 148, 240, 255)};
 
-/// The values that are black and white: those of the transfer function, or all.
-glm::dvec2 shownRange(const Scene& scene) {
-  const auto& function = scene.classification.transferFunction;
-  if (!function || function->opacity.size() < 2) return {scene.volume->minimum, scene.volume->maximum};
-  return {function->opacity.front().scalar, function->opacity.back().scalar};
+/// Behind voxels without data, linear.
+constexpr glm::vec3 kNoData(0.0052f, 0.0065f, 0.013f);
+
+/// The colours of slices; grey where those of a baked volume cannot be had of its values.
+Classification colorsOf(const ClassificationDescription& description, const Volume& volume) {
+  try {
+    return description.resolveSliced(volume);
+  } catch (const Error&) {
+    return {.transferFunction = fitted(readTransferCurves(kFunctionOfWindow), volume)};
+  }
 }
 
 double voxelEdge(const Volume& volume, int axis) {
@@ -32,34 +40,28 @@ int upAxis(const Volume& volume) {
   return up.y > up.z ? 1 : 2;
 }
 
-glm::ivec2 sliceAxes(int axis, int up) {
+glm::ivec2 axesAcross(int axis, int up) {
   const int other = 3 - up;
   return axis == 0 ? glm::ivec2(other, up) : glm::ivec2(0, axis == up ? other : up);
 }
 
-std::vector<std::uint8_t> sliceTexels(const Volume& volume, int axis, int voxel, glm::dvec2 range) {
-  const auto [right, up] = std::pair(sliceAxes(axis, upAxis(volume)).x, sliceAxes(axis, upAxis(volume)).y);
-  const double width = range.y - range.x;
-  std::vector<std::uint8_t> texels;
-  texels.reserve(4 * std::size_t(volume.dimensions[right]) * std::size_t(volume.dimensions[up]));
-  glm::ivec3 place;
-  place[axis] = voxel;
-  for (place[up] = volume.dimensions[up] - 1; place[up] >= 0; --place[up])
-    for (place[right] = 0; place[right] < volume.dimensions[right]; ++place[right]) {
-      const float value = volume.scalars.at(place);
-      const double part = width > 0.0 ? std::clamp((double(value) - range.x) / width, 0.0, 1.0) : 1.0;
-      const auto grey = std::uint8_t(std::lround(255.0 * part));
-      if (value == kInactiveVoxel)
-        texels.insert(texels.end(), {16, 19, 30, 255});
-      else
-        texels.insert(texels.end(), {grey, grey, grey, 255});
-    }
-  return texels;
+std::vector<std::uint8_t> sliceTexels(const Volume& volume, const Classification& colors, int axis, int voxel) {
+  const glm::ivec2 axes = axesAcross(axis, upAxis(volume)), size(volume.dimensions[axes.x], volume.dimensions[axes.y]);
+  SlicePixels pixels{.corner = glm::dvec3(-0.5)};
+  pixels.corner[axis] = voxel;
+  pixels.corner[axes.y] = size.y - 0.5;
+  pixels.right[axes.x] = 1.0;
+  pixels.down[axes.y] = -1.0;
+  return srgbTexels(drawSlice(volume, colors, pixels, size), {.background = Background{kNoData, kNoData}});
 }
 
 void SliceView::follow(const ViewState& state) {
   const std::shared_ptr<const Volume>& volume = state.latest->scene.volume;
-  if (volume == volume_) return;
+  const ClassificationDescription& classification = state.latest->request.scene.classification;
+  const std::string text = textOf({.classification = classification}, {"classification"});
+  if (volume == volume_ && text == colorsText_) return;
+  colors_ = colorsOf(classification, *volume);
+  colorsText_ = text;
   const bool sameBox = volume_ && volume_->dimensions == volume->dimensions;  // as of the frames of a sequence
   volume_ = volume;
   if (!sameBox) voxel_ = volume->dimensions / 2;
@@ -67,7 +69,7 @@ void SliceView::follow(const ViewState& state) {
 }
 
 void SliceView::handle(int axis, const ImageFrame& frame) {
-  const glm::ivec2 axes = sliceAxes(axis, upAxis(*volume_));
+  const glm::ivec2 axes = axesAcross(axis, upAxis(*volume_));
   const ImGuiIO& io = ImGui::GetIO();
   const glm::ivec3 last = volume_->dimensions - 1;
   glm::ivec3 under = voxel_;
@@ -85,14 +87,13 @@ void SliceView::handle(int axis, const ImageFrame& frame) {
 }
 
 /// Fitted into `size` with the proportions of the world.
-void SliceView::drawSlice(int axis, ImVec2 size, glm::dvec2 range) {
+void SliceView::drawSlice(int axis, ImVec2 size) {
   Slice& slice = slices_[std::size_t(axis)];
-  const glm::ivec2 axes = sliceAxes(axis, upAxis(*volume_));
-  if (!slice.texture || slice.voxel != voxel_[axis] || slice.range != range) {
+  const glm::ivec2 axes = axesAcross(axis, upAxis(*volume_));
+  if (!slice.texture || slice.voxel != voxel_[axis]) {
     slice.voxel = voxel_[axis];
-    slice.range = range;
     slice.texture = std::make_unique<Texture>(device_, glm::ivec2(volume_->dimensions[axes.x], volume_->dimensions[axes.y]), "slice");
-    slice.texture->upload(device_, sliceTexels(*volume_, axis, slice.voxel, range));
+    slice.texture->upload(device_, sliceTexels(*volume_, colors_, axis, slice.voxel));
   }
   const double width = voxelEdge(*volume_, axes.x) * volume_->dimensions[axes.x];
   const double height = voxelEdge(*volume_, axes.y) * volume_->dimensions[axes.y];
@@ -120,17 +121,16 @@ void SliceView::drawSlice(int axis, ImVec2 size, glm::dvec2 range) {
 void SliceView::draw(const ViewState& state) {
   if (!state.latest) return;
   follow(state);
-  const glm::dvec2 range = shownRange(state.latest->scene);
   const ImVec2 room = ImGui::GetContentRegionAvail();
   const float gap = ImGui::GetStyle().ItemSpacing.y;
   const int up = upAxis(*volume_);
-  for (const int axis : {up, 3 - up, 0}) drawSlice(axis, {std::max(room.x, 1.0f), std::max((room.y - 2.0f * gap) / 3.0f, 1.0f)}, range);
+  for (const int axis : {up, 3 - up, 0}) drawSlice(axis, {std::max(room.x, 1.0f), std::max((room.y - 2.0f * gap) / 3.0f, 1.0f)});
 }
 
 void SliceView::drawOutlines(const ViewState& state, const ImageFrame& frame) const {
   if (!volume_ || !state.camera) return;
   for (int axis = 0; axis < 3; ++axis) {
-    const glm::ivec2 axes = sliceAxes(axis, upAxis(*volume_));
+    const glm::ivec2 axes = axesAcross(axis, upAxis(*volume_));
     std::array<std::optional<ImVec2>, 4> corners;
     for (int i = 0; i < 4; ++i) {
       glm::dvec3 index;

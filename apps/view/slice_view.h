@@ -1,10 +1,10 @@
 #pragma once
-// Axial, coronal and sagittal slices of a volume's values.
+// Axial, coronal and sagittal slices of a volume's values, along the axes of its voxels.
 
 #include <array>
 #include <memory>
 #include <optional>
-#include <span>
+#include <string>
 #include <vector>
 
 #include "apps/view/overlays.h"
@@ -16,12 +16,12 @@ namespace freevoxels {
 /// The voxels' axis, y or z, that is nearest to the volume's up direction.
 int upAxis(const Volume& volume);
 
-/// The axes of the slice across `axis`: to the right and upwards.
-glm::ivec2 sliceAxes(int axis, int up);
+/// The voxels' axes in the slice across `axis`: to the right and upwards.
+glm::ivec2 axesAcross(int axis, int up);
 
-/// The bytes of the slice across `axis` at a voxel, RGBA, top row first, one texel a voxel: values from range.x to range.y are
-/// black to white, voxels without data dark blue.
-std::vector<std::uint8_t> sliceTexels(const Volume& volume, int axis, int voxel, glm::dvec2 range);
+/// The bytes of the slice across `axis` at a voxel, RGBA, top row first, one texel a voxel, coloured as drawSlice() does; voxels without
+/// data are dark blue.
+std::vector<std::uint8_t> sliceTexels(const Volume& volume, const Classification& colors, int axis, int voxel);
 
 class SliceView {
  public:
@@ -36,15 +36,16 @@ class SliceView {
  private:
   struct Slice {
     int voxel = -1;
-    glm::dvec2 range{0.0};
     std::unique_ptr<Texture> texture;
   };
   void follow(const ViewState& state);
-  void drawSlice(int axis, ImVec2 size, glm::dvec2 range);
+  void drawSlice(int axis, ImVec2 size);
   void handle(int axis, const ImageFrame& frame);
 
   const Device& device_;
   std::shared_ptr<const Volume> volume_;
+  std::string colorsText_;  ///< of the classification that `colors_` were made of
+  Classification colors_;
   glm::ivec3 voxel_{0};  ///< that all three go through
   std::array<Slice, 3> slices_;
 };

@@ -1,5 +1,7 @@
 #include "apps/view/view_options.h"
 
+#include <spdlog/spdlog.h>
+
 #include <CLI/CLI.hpp>
 #include <filesystem>
 
@@ -37,6 +39,10 @@ std::optional<Sequence> takeVolume(SceneDescription& scene) {
   std::string& volume = scene.input.volume;
   if (volume.empty()) volume = kFirstVolume;
   scene.check();
+  if (scene.method.slice) {
+    spdlog::warn("the viewer shows the volume, and its slices beside it (key L): --slice is left out");
+    scene.method.slice.reset();
+  }
   std::optional<Sequence> sequence;
   if (isPattern(volume)) {
     sequence = findSequence(volume);

@@ -61,17 +61,23 @@ std::optional<TransferFunction> functionToDraw(const ClassificationDescription& 
   return std::nullopt;
 }
 
+/// Fails for labels and channels of a volume that was read without, and for a transfer function of one that was read with channels.
+void checkMade(const ClassificationDescription& given, const Volume& volume) {
+  const bool isMade = volume.albedo && volume.albedo->isMade;
+  if (((given.labels && !given.labels->isNone()) || !given.channels.empty()) && !isMade)
+    fail(ErrorKind::Usage, "{} says how the values of a volume are read, and {} has been read without: give it where that is opened",
+         Parameter(given.channels.empty() ? "labels" : "channel"), volume.source);
+  if ((given.transferFunction || given.iso) && given.channels.empty() && isMade)
+    fail(ErrorKind::Usage, "{} is of one grid of values, and {} is drawn with several channels: choose one with {}",
+         Parameter(given.iso ? "iso" : "transfer-function"), volume.source, Parameter("grid", "NAME"));
+}
+
 }  // namespace
 
 Classification ClassificationDescription::resolve(const Volume& volume, bool shines) const {
   Classification classification;
-  if (((labels && !labels->isNone()) || !channels.empty()) && !(volume.albedo && volume.albedo->isMade))
-    fail(ErrorKind::Usage, "{} says how the values of a volume are read, and {} has been read without: give it where that is opened",
-         Parameter(channels.empty() ? "labels" : "channel"), volume.source);
   if (volume.classification) classification = bakedClassification(*this, volume);
-  if ((transferFunction || iso) && channels.empty() && volume.albedo && volume.albedo->isMade)
-    fail(ErrorKind::Usage, "{} is of one grid of values, and {} is drawn with several channels: choose one with {}",
-         Parameter(iso ? "iso" : "transfer-function"), volume.source, Parameter("grid", "NAME"));
+  checkMade(*this, volume);
   if (auto function = functionToDraw(*this, classification, volume, shines)) {
     const bool isBaked = !transferFunction && !iso && classification.transferFunction;
     if (!isBaked) classification.order = order.value_or(ClassificationOrder::Post);
@@ -111,6 +117,20 @@ Classification ClassificationDescription::resolveProjected(const Volume& volume,
     classification.transferFunction = changed(intensityFunction(volume, projection), change());
   makeOpaque(*classification.transferFunction);
   if (projection == IntensityProjection::Average) keepAllValues(*classification.transferFunction, volume);
+  return classification;
+}
+
+Classification ClassificationDescription::resolveSliced(const Volume& volume) const {
+  Classification classification;
+  checkMade(*this, volume);
+  if (volume.albedo && volume.albedo->isMade) return classification;
+  if (volume.classificationIsFixed)
+    fail(ErrorKind::Usage, "{} shows values, and {} was baked for one classification without them: bake it with {}", Parameter("slice"),
+         volume.source, Parameter("keep-scalars"));
+  if (!transferFunction && volume.classification && volume.classification->transferFunction)
+    classification.transferFunction = changed(*volume.classification->transferFunction, change());
+  else
+    classification.transferFunction = fitted(readTransferCurves(transferFunction.value_or(kFunctionOfWindow)), volume, change());
   return classification;
 }
 

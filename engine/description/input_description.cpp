@@ -8,6 +8,7 @@
 #include "engine/core/machine.h"
 #include "engine/description/scene_description.h"
 #include "engine/description/text_values.h"
+#include "engine/octree/volume_limits.h"
 #include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
 #include "engine/volume/procedural.h"
@@ -221,6 +222,16 @@ std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensiti
 
 std::string remarksOf(const Volume& volume) {
   return volume.remarks.empty() ? "" : fmt::format("{}: {}", volume.source, fmt::join(volume.remarks, "; "));
+}
+
+InputUnits InputDescription::units() const {
+  try {
+    if (volume.empty() || kind() != VolumeKind::Scan) return {};
+    const ScanHeader header = readScanHeader(volume, scanRequest(kMaxNumberedVoxels));
+    return {.length = header.inMillimetres ? "mm" : "", .value = header.valueUnit};
+  } catch (const Error&) {
+    return {};  // a file that is no longer there
+  }
 }
 
 }  // namespace freevoxels

@@ -92,6 +92,8 @@ MethodDescription resolvedMethod(const MethodDescription& given) {
   given.apply(frame);
   const TableSettings table = given.table();
   MethodDescription result{.mode = given.mode,
+                           .slice = given.slice,
+                           .annotate = given.annotate,
                            .draw = Draw::Gather,
                            .directions = table.directions,
                            .code = table.code,
@@ -133,6 +135,29 @@ void checkLayers(const SceneDescription& scene, const Aovs& aovs) {
          Parameter("scattering", "1"), Parameter("unlit"));
 }
 
+Camera sliceCameraOf(const SceneDescription& scene, const Volume& volume) {
+  return sliceCamera(*scene.method.slice, volume.up, worldBox(volume), scene.camera.size);
+}
+
+void refuseTurnOfSlice(const SceneDescription& scene) {
+  if (scene.method.slice)
+    fail(ErrorKind::Usage, "a slice is one image, and the camera of a turntable goes around: leave {} out, or render an image for each {}",
+         Parameter("slice"), Parameter("slice"));
+}
+
+namespace {
+
+void checkSlice(const SceneDescription& scene) {
+  if (!scene.method.slice) return;
+  if (scene.output.aovs.any())
+    fail(ErrorKind::Usage, "a slice has no depth, and no layers: leave out {}", Parameter("aov", aovText(scene.output.aovs)));
+  if (scene.method.drawing() == Draw::Splats)
+    fail(ErrorKind::Usage, "{} draws the values of voxels: leave {} and other options of splats out", Parameter("slice"),
+         Parameter("draw", "splats"));
+}
+
+}  // namespace
+
 void SceneDescription::check() const {
   input.check();
   if (camera.holdout && method.drawing() == Draw::Splats) failHoldoutOfSplats();
@@ -150,6 +175,7 @@ void SceneDescription::check() const {
     fail(ErrorKind::Usage, "{} chooses among the grids of a file, and {} has one", Parameter("albedo-grid"), input.volume);
   classification.check(input);
   emission.check(input);
+  checkSlice(*this);
   checkLayers(*this, output.aovs);
   camera.check();
   lighting.check();
@@ -157,7 +183,7 @@ void SceneDescription::check() const {
 
 Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
   MoreGrids more{.mayBeMissing = isFrame};
-  if (!method.isProjected()) {
+  if (!method.showsValues()) {
     more.temperature = emission.grid();
     more.albedo = classification.grid();
   }
@@ -182,6 +208,7 @@ BakedNeed SceneDescription::needOf(const fvx::FvxFile& file, int frameCount) con
   const Volume outline = bakedOutline(file);
   const Classification classified = resolveClassification(outline);
   const bool isRead = !isAsBaked(outline, classified);
+  if (method.slice) return {.level = 0, .isRead = true};
   if (classified.transferFunction) return {.level = 0, .isRead = isRead};
   FrameSettings frame;
   method.apply(frame);
@@ -197,6 +224,7 @@ BakedNeed SceneDescription::needOf(const fvx::FvxFile& file, int frameCount) con
 
 std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classification& classified, int frameCount,
                                               std::span<const SceneVolume> others) const {
+  if (method.slice) return std::vector<Camera>(std::size_t(frameCount), sliceCameraOf(*this, volume));
   const auto content = [&] {
     Subject all = contentOf(volume, method.isProjected() ? withoutFaintValues(classified) : classified);
     if (others.empty()) return all;
@@ -231,6 +259,7 @@ Scene SceneDescription::resolve(std::shared_ptr<const Volume> volume) const {
 
 Classification SceneDescription::resolveClassification(const Volume& volume) const {
   if (method.isProjected()) return classification.resolveProjected(volume, *method.mode);
+  if (method.slice) return classification.resolveSliced(volume);
   Classification result = classification.resolve(volume, emission.shines(volume));
   result.emission = emission.resolve(volume, result);
   if (result.emission && !classification.albedo && !volume.classification) result.albedo = glm::vec3(kSmokeAlbedo);
@@ -244,7 +273,7 @@ void SceneDescription::resolveView(Scene& scene) const {
 
 std::optional<Lighting> SceneDescription::resolveLighting(const Volume& volume, const Classification& classified,
                                                           const Camera& seenBy) const {
-  return method.isProjected() ? std::nullopt : lighting.resolve(volume, classified, seenBy);
+  return method.showsValues() ? std::nullopt : lighting.resolve(volume, classified, seenBy);
 }
 
 Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
@@ -267,8 +296,13 @@ SceneDescription SceneDescription::resolved(const Scene& scene) const {
   if (proceduralName(input.volume)) result.input.resolution = input.resolution.value_or(glm::ivec3(kDefaultResolution));
   result.classification = resolvedClassification(classification, scene);
   result.emission = resolvedEmission(emission, scene);
-  result.camera.look(scene.camera);
   result.camera.frames.reset();
+  if (!method.slice) {
+    result.camera.look(scene.camera);
+  } else if (!scene.classification.transferFunction) {  // labels and channels, of which these say nothing
+    result.classification.densityScale.reset();
+    result.classification.albedo.reset();
+  }
   result.lighting = resolvedLighting(lighting, scene.lighting);
   result.method = resolvedMethod(method);
   return result;

@@ -29,6 +29,7 @@
 #include "engine/volume/scan.h"
 #include "engine/volume/scan_file.h"
 #include "engine/volume/scene_volume.h"
+#include "engine/volume/slice.h"
 #include "engine/volume/transfer_curves.h"
 #include "engine/volume/vdb.h"
 #include "engine/volume/volume.h"
@@ -50,6 +51,12 @@ inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 
 /// What the name of a volume names.
 enum class VolumeKind { Procedural, Baked, Scan, OpenVdb };
+
+/// The units of what a volume's file has; empty where it does not say them.
+struct InputUnits {
+  std::string length;  ///< of the world: "mm"
+  std::string value;   ///< of the scalars: "HU"
+};
 
 /// The volume, before it is read.
 struct InputDescription {
@@ -80,6 +87,8 @@ struct InputDescription {
   VolumeKind kind() const;
   /// What to read of a scan.
   ScanRequest scanRequest(std::uint64_t maximumVoxels, const Progress& progress = {}) const;
+  /// Reads them from the header of a scan; those of other volumes are not known.
+  InputUnits units() const;
   /// Null where the volume is not a baked one, and where it is clipped, so that it is read into memory.
   std::shared_ptr<const fvx::FvxFile> baked() const;
 
@@ -138,6 +147,9 @@ struct ClassificationDescription {
   /// What values are projected by: the transfer function that is given or baked, else intensityFunction(), whatever the other fields say.
   /// Fails for isosurfaces, labels and channels, and for a baked volume without values.
   Classification resolveProjected(const Volume& volume, IntensityProjection projection) const;
+  /// What slices are coloured by: the transfer function that is given or baked, else kFunctionOfWindow; none of labels and channels.
+  /// Fails for a baked volume without values.
+  Classification resolveSliced(const Volume& volume) const;
   /// Gives what was resolved for another volume.
   void take(const Classification& resolved);
   /// Gives the resolved function, and with it what changes it.
@@ -239,6 +251,8 @@ struct AddedVolume {
 /// The method of drawing, in which the paper and FreeVoxels differ. What is not given is the default of FreeVoxels, or the paper's.
 struct MethodDescription {
   std::optional<IntensityProjection> mode;  ///< else None: a ray sees a medium. The projections are without light
+  std::optional<SlicePlane> slice;          ///< is drawn in place of a view, without light
+  bool annotate = false;                    ///< whether the bars of annotation.h are drawn over the image
   bool paper = false;  ///< the paper's side of composite, attenuation, directions, code, path length, gradient, lod and culling
   std::optional<Draw> draw;  ///< else by drawing()
   std::optional<Composite> composite;
@@ -257,6 +271,8 @@ struct MethodDescription {
   /// `draw`, or if it is not given Splats with options of theirs, else Gather.
   Draw drawing() const;
   bool isProjected() const { return mode.value_or(IntensityProjection::None) != IntensityProjection::None; }
+  /// Whether values are shown, on which no light shines.
+  bool showsValues() const { return isProjected() || slice; }
   /// Fails where gathering or a projection is asked for with options of splats, and for levels of detail of a projection.
   void apply(FrameSettings& frame) const;
 
@@ -337,7 +353,7 @@ struct SceneDescription {
   Scene resolve(std::shared_ptr<const Volume> volume) const;
   /// The two parts of resolve(): classification, and camera and light. `scene` must have the other part.
   Classification resolveClassification(const Volume& volume) const;
-  /// The light, of which a projection has none.
+  /// The light, of which projections and slices have none.
   std::optional<Lighting> resolveLighting(const Volume& volume, const Classification& classification, const Camera& camera) const;
   void resolveView(Scene& scene) const;
   /// As resolve(), but with the camera, the lights and the scales of densities and temperatures or the transfer function of another
@@ -351,6 +367,12 @@ struct SceneDescription {
 
   bool operator==(const SceneDescription&) const = default;
 };
+
+/// The camera that sees the slice of a scene through the box of a volume (sliceCamera).
+Camera sliceCameraOf(const SceneDescription& scene, const Volume& volume);
+
+/// Fails for a slice, which is one image and has no turn.
+void refuseTurnOfSlice(const SceneDescription& scene);
 
 /// Fails for layers (Aovs::lights, Aovs::channels) of light or channels that the scene has not, or of light that is no sum over channels.
 void checkLayers(const SceneDescription& scene, const Aovs& aovs);

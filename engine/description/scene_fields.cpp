@@ -241,6 +241,9 @@ void addMethod(std::vector<SceneField>& fields) {
   using Method = MethodDescription;
   Section<Method> section(fields, "method", &SceneDescription::method);
   section.add("mode", &Method::mode, words(kModeWords));
+  section.add("slice", &Method::slice, Codec<SlicePlane>{.form = kSliceForm, .read = readSlicePlane, .text = slicePlaneText}).excludes = {
+      "mode", "iso", "add", "orbit", "camera-position", "look-at", "up", "fov", "orthographic", "holdout"};
+  section.add("annotate", &Method::annotate, truth(Kind::Flag));
   section.add("composite", &Method::composite, words(kCompositeWords));
   section.add("draw", &Method::draw, words(kDrawWords));
   section.add("attenuation", &Method::attenuation, words(kAttenuationWords));

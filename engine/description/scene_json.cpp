@@ -33,7 +33,7 @@ std::string quoted(const SceneField& field) {
 }
 
 char separatorOf(const SceneField& field) {
-  return field.form.starts_with("WxH") ? 'x' : ',';
+  return field.form.starts_with("WxH") ? 'x' : field.form.starts_with("AXIS:") ? ':' : ',';
 }
 
 /// Whether the text is not a file name: a procedural volume, or JSON.
@@ -56,12 +56,18 @@ std::string namedFor(const fs::path& folder, bool isFunction, const std::string&
 
 std::string numbersText(const SceneField& field, const Json& list) {
   std::vector<std::string> words;
-  for (const Json& value : list) words.push_back(value.is_number() ? value.dump() : "");
+  for (const Json& value : list) words.push_back(value.is_number() ? value.dump() : value.is_string() ? value.get<std::string>() : "");
   return fmt::format("{}", fmt::join(words, std::string(1, separatorOf(field))));
 }
 
 bool isNumbers(const Json& list) {
   return list.is_array() && !list.empty() && std::ranges::all_of(list, [](const Json& v) { return v.is_number(); });
+}
+
+/// Whether a list is a word and what belongs to it, as ["z", 12.5].
+bool isPair(const SceneField& field, const Json& list) {
+  return separatorOf(field) == ':' && list.is_array() && list.size() == 2 && list[0].is_string() &&
+         (list[1].is_number() || list[1].is_string());
 }
 
 /// The text "direction=1,0,0,intensity=3" for an object; empty if a value is neither a number nor a list.
@@ -90,7 +96,7 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
     return field.isFile() ? namedFrom(folder, field.kind == Kind::Function, text) : text;
   }
   if (!field.isFile() && value.is_number()) return value.dump();
-  if (!field.isFile() && isNumbers(value)) return numbersText(field, value);
+  if (!field.isFile() && (isNumbers(value) || isPair(field, value))) return numbersText(field, value);
   if (value.is_object() && field.kind == Kind::Keys)
     if (const std::string text = keysText(field, value); !text.empty()) return text;
   if (value.is_object() && field.kind == Kind::Function) return value.dump(-1, ' ', false, Json::error_handler_t::replace);

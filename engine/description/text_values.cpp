@@ -155,6 +155,19 @@ std::string windowText(const ValueWindow& window) {
   return numberText(window.low) + ".." + numberText(window.high);
 }
 
+SlicePlane readSlicePlane(const std::string& name, const std::string& text) {
+  const NumberForm form{.name = name, .form = kSliceForm, .range = {-1e30, 1e30}};
+  if (text.size() < 3 || text[0] < 'x' || text[0] > 'z' || text[1] != ':')
+    fail(ErrorKind::Usage, "{} takes {} with an axis x, y or z, as z:12.5 or z:50%, not '{}'", name, kSliceForm, quotedPart(text));
+  SlicePlane plane{.axis = text[0] - 'x', .isPercent = text.ends_with('%')};
+  plane.position = readNumbers(form, text.substr(2, text.size() - (plane.isPercent ? 3 : 2)))[0];
+  return plane;
+}
+
+std::string slicePlaneText(const SlicePlane& plane) {
+  return fmt::format("{}:{}{}", "xyz"[plane.axis], plane.position, plane.isPercent ? "%" : "");
+}
+
 bool isInlineJson(const std::string& text) {
   return text.starts_with('{');
 }

@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "engine/volume/slice.h"
 #include "engine/volume/transfer_curves.h"
 
 namespace freevoxels {
@@ -50,6 +51,11 @@ inline constexpr const char* kWindowForm = "CENTER,WIDTH|LO..HI";
 ValueWindow readWindow(const std::string& name, const std::string& text);
 /// The text of a window, as LO..HI.
 std::string windowText(const ValueWindow& window);
+
+inline constexpr const char* kSliceForm = "AXIS:POSITION[%]";
+/// A plane across an axis of the world: "z:12.5", "y:50%".
+SlicePlane readSlicePlane(const std::string& name, const std::string& text);
+std::string slicePlaneText(const SlicePlane& plane);
 
 /// The shortest text that is read as the same number.
 std::string numberText(double value);

@@ -33,7 +33,7 @@ struct Slice {
 };
 using Slices = std::vector<Slice>;
 
-constexpr DicomTag kDescription = 0x0008103e, kSeries = 0x0020000e, kInstance = 0x00200013, kPosition = 0x00200032,
+constexpr DicomTag kModality = 0x00080060, kDescription = 0x0008103e, kSeries = 0x0020000e, kInstance = 0x00200013, kPosition = 0x00200032,
                    kOrientation = 0x00200037, kFrames = 0x00280008, kRows = 0x00280010, kColumns = 0x00280011, kBits = 0x00280100,
                    kPixelData = 0x7fe00010;
 
@@ -193,6 +193,7 @@ class DicomScan : public ScanReader {
     header_.type = sampleTypeOf(io->GetInternalComponentType()).value_or(SampleType::U16);
     if (io->GetRescaleSlope() != 1.0 || io->GetRescaleIntercept() != 0.0)
       header_.rescale = glm::dvec2(io->GetRescaleSlope(), io->GetRescaleIntercept());
+    if (const auto tags = DicomTags::read(slices_.front().file); tags && tags->text(kModality) == "CT") header_.valueUnit = "HU";
     if (places == 1) return;
     if (header_.dimensions.z != 1)
       fail(ErrorKind::Input, "'{}' has several files of several slices each: name one of the files", path_.string());

@@ -99,6 +99,7 @@ inline ScanHeader headerOf(const std::filesystem::path& file, const itk::ImageIO
   const std::optional<SampleType> type = sampleTypeOf(io.GetComponentType());
   if (!type) fail(ErrorKind::Input, "'{}' has values of a type that no scan has: convert them to whole numbers or floats", file.string());
   ScanHeader header{.type = *type};
+  header.inMillimetres = true;
   glm::i64vec3 dimensions(1);
   for (unsigned axis = 0; axis < std::min(io.GetNumberOfDimensions(), 3u); ++axis) {
     dimensions[int(axis)] = std::int64_t(io.GetDimensions(axis));

@@ -157,6 +157,7 @@ class ItkScan : public ScanReader {
     });
     header_ = headerOf(path_, *io_);
     header_.format = nameOf(format);
+    header_.inMillimetres = format != ItkFormat::Vtk;  // whose files have no units
     takeTimeSteps();
     describeNifti();
     if (payload.bytes != Payload::kUnknown)

@@ -136,7 +136,9 @@ class NgffScan : public ScanReader {
     if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') {
       const int axis = name[0] - 'x';
       axes_.space[std::size_t(axis)] = number;
-      axes_.millimetres[axis] = millimetresOf(stringOf(json, "unit")).value_or(1.0);
+      const std::optional<double> millimetres = millimetresOf(stringOf(json, "unit"));
+      axes_.millimetres[axis] = millimetres.value_or(1.0);
+      if (axis == 0) header_.inMillimetres = millimetres.has_value();
     } else if (type == "time" || name == "t") {
       axes_.time = number;
     } else if (type == "channel" || name == "c") {

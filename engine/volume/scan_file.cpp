@@ -193,6 +193,7 @@ ChosenChannels chosenChannels(const fs::path& file, ScanHeader& header, const Sc
 /// The sides of the box that the header says, with the request's spacing.
 void space(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
   if (!spacing) return;
+  header.inMillimetres = true;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = glm::length(header.indexToWorld[axis]);
     glm::dvec3 unit(0.0);

@@ -64,6 +64,8 @@ struct ScanHeader {
   std::vector<glm::ivec3> levels;     ///< dimensions of a file with several resolutions, the finest first
   int level = 0;                      ///< which of them `dimensions` and `indexToWorld` are of
   std::vector<std::string> remarks;   ///< what was chosen, as Volume::remarks
+  bool inMillimetres = false;         ///< whether the file says that lengths are; else their unit is not known
+  std::string valueUnit;              ///< "HU"; empty where the file does not say it
 
   std::uint64_t samples() const { return std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z); }
 };

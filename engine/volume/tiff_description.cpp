@@ -151,7 +151,9 @@ std::optional<TiffDescription> omeDescription(const std::filesystem::path& file,
     const std::string name = std::string("PhysicalSize") + "XYZ"[axis];
     const std::optional<double> size = distanceIn(attribute(pixels, name.c_str()));
     const pugi::xml_attribute unit = pixels.attribute((name + "Unit").c_str());
-    if (size) description.distance[axis] = *size * millimetresOf(unit ? unit.as_string() : "\u00b5m").value_or(1.0);
+    const std::optional<double> millimetres = millimetresOf(unit ? unit.as_string() : "\u00b5m");
+    if (size) description.distance[axis] = *size * millimetres.value_or(1.0);
+    if (size && millimetres) description.unit = 1.0;
   }
   takeOmeChannels(pixels, description);
   takeOmePages(file, pixels, description);

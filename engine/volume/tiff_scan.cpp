@@ -267,6 +267,7 @@ class TiffScan : public ScanReader {
     }
     distance.z = description_.distance[2].value_or(distance.x);
     for (int axis = 0; axis < 3; ++axis) header_.indexToWorld[axis][axis] = distance[axis];
+    header_.inMillimetres = isPlain ? unit == RESUNIT_CENTIMETER : description_.unit.has_value();
   }
 
   /// Reads the current page.

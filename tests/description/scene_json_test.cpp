@@ -118,6 +118,13 @@ SceneDescription surface() {
   return scene;
 }
 
+SceneDescription slice() {
+  SceneDescription scene;
+  scene.method.slice = SlicePlane{.axis = 1, .position = 12.5, .isPercent = true};
+  scene.method.annotate = true;
+  return scene;
+}
+
 nlohmann::json jsonIn(const std::filesystem::path& file) {
   return nlohmann::json::parse(readBytes(file));
 }
@@ -126,7 +133,7 @@ nlohmann::json jsonIn(const std::filesystem::path& file) {
 
 TEST(SceneJson, DescriptionsSurviveTheWayToAFileAndBack) {
   const TemporaryFolder folder;
-  for (const SceneDescription& scene : {everything(folder), others(folder), labelled(), dyed(), surface(), SceneDescription{}}) {
+  for (const SceneDescription& scene : {everything(folder), others(folder), labelled(), dyed(), surface(), slice(), SceneDescription{}}) {
     writeScene(folder / "s.json", scene);
     EXPECT_EQ(readScene(folder / "s.json"), scene) << readBytes(folder / "s.json");
   }
@@ -136,6 +143,20 @@ TEST(SceneJson, FormerWordsOfTheMethodAreThoseOfNothingGiven) {
   const TemporaryFolder folder;
   writeBytes(folder / "s.json", R"({"method": {"draw": "auto", "attenuation": "exact", "lod": 2}})");
   EXPECT_EQ(readScene(folder / "s.json").method, MethodDescription{.lod = 2.0});
+}
+
+TEST(SceneJson, ASliceIsATextOrAPair) {
+  const TemporaryFolder folder;
+  for (const char* const given : {R"("z:-12.5")", R"(["z", -12.5])", R"(["z", "-12.5"])"}) {
+    writeBytes(folder / "s.json", fmt::format(R"({{"method": {{"slice": {}}}}})", given));
+    EXPECT_EQ(readScene(folder / "s.json").method.slice, (SlicePlane{.axis = 2, .position = -12.5})) << given;
+  }
+  for (const char* const wrong :
+       {R"("w:1")", R"("z")", R"("z:")", R"("z:1,2")", R"("z:%")", R"("z:nan")", R"(["z"])", R"(["z", 1, 2])", "3"}) {
+    writeBytes(folder / "s.json", fmt::format(R"({{"method": {{"slice": {}}}}})", wrong));
+    const std::string sentence = errorOf([&] { readScene(folder / "s.json"); }).what();
+    EXPECT_NE(sentence.find("AXIS:POSITION"), std::string::npos) << wrong << ": " << sentence;
+  }
 }
 
 TEST(SceneJson, AKeyWithoutEffectOfAnEarlierVersionIsReadWithOneSentence) {
@@ -152,7 +173,7 @@ TEST(SceneJson, AKeyWithoutEffectOfAnEarlierVersionIsReadWithOneSentence) {
 
 TEST(SceneJson, TheTestsAboveHaveEveryField) {
   const TemporaryFolder folder;
-  const std::array scenes{everything(folder), others(folder), labelled(), dyed(), surface()};
+  const std::array scenes{everything(folder), others(folder), labelled(), dyed(), surface(), slice()};
   for (const SceneField& field : sceneFields())
     EXPECT_TRUE(std::ranges::any_of(scenes, [&](const SceneDescription& scene) { return !field.texts(scene).empty(); }))
         << field.section << "." << field.name;

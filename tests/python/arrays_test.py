@@ -199,5 +199,35 @@ class ImageTest(unittest.TestCase):
                 freevoxels.save(name, image)
 
 
+class SliceTest(unittest.TestCase):
+    RED = {"range": [0, 31], "opacity": [[0, 0], [1, 0.5]], "color": [[0, 0, 0, 0], [1, 1, 0, 0]]}
+
+    def test_slices_are_arrays_of_the_values_colours(self):
+        ramp = np.broadcast_to(np.arange(32, dtype="f4") - 0.0, (8, 16, 32))
+        volume = freevoxels.Volume(ramp, spacing=(1, 1, 2))
+        for where in ("z:50%", ("z", "50%"), ("z", 8), "z:8"):
+            image = freevoxels.render(volume, slice=where, size=(32, 16), transfer_function=self.RED)
+            np.testing.assert_allclose(image[:, :, 0], np.broadcast_to(np.arange(32) / 31, (16, 32)), atol=1e-5, err_msg=str(where))
+            np.testing.assert_array_equal(image[:, :, 3], 1)
+
+    def test_frames_of_a_renderer_are_slices_or_views(self):
+        renderer = freevoxels.Renderer(freevoxels.Volume(values((9, 8, 17))), size=(33, 20), orbit=(20, 10))
+        view = renderer.render()
+        slices = [renderer.render(slice=f"y:{part}%") for part in (20, 70)]
+        self.assertFalse(np.array_equal(*slices))
+        np.testing.assert_array_equal(renderer.render(), view)
+        np.testing.assert_array_equal(renderer.render(slice="y:20%"), slices[0])
+        self.assertFalse(np.array_equal(renderer.render(slice="y:20%", annotate=True), slices[0]))
+
+    def test_what_a_slice_has_not_is_refused(self):
+        renderer = freevoxels.Renderer(freevoxels.Volume(values((9, 8, 17))), size=(33, 20))
+        for options, sentence in (({"slice": "z:50"}, "along z"), ({"slice": "w:1"}, "AXIS:POSITION"), ({"slice": "z:1", "depth": True}, "no depth"),
+                                  ({"slice": "z:1", "mode": "mip"}, "exclude each other")):
+            with self.assertRaisesRegex(freevoxels.Error, sentence):
+                renderer.render(**options)
+        with self.assertRaisesRegex(freevoxels.Error, "one image"):
+            list(renderer.turntable(2, slice="z:50%"))
+
+
 if __name__ == "__main__":
     unittest.main()

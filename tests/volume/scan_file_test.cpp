@@ -266,6 +266,22 @@ TEST(ScanFile, DicomSeriesAreChosen) {
   EXPECT_NE(refusalOf(both, {.series = "1.2"}).find("has no series 1.2"), std::string::npos);
 }
 
+TEST(ScanFile, UnitsAreKnownAsFarAsTheFileSaysThem) {
+  const TemporaryFolder folder;
+  const ScanPlace place = placeOf("LPS");
+  writeDicom(folder / "ct", place);
+  writeBytes(folder / "letter.vtk", vtkOf(place));
+  writeBytes(folder / "letter.nrrd", nrrdHeader(place, "endian: little\nencoding: raw\n\n") + bytesOf<std::uint16_t>(letterOf(place)));
+  const auto unitsOf = [&](const char* name, const ScanRequest& request = {}) {
+    const ScanHeader header = readScanHeader(folder / name, request);
+    return std::pair(header.inMillimetres, header.valueUnit);
+  };
+  EXPECT_EQ(unitsOf("ct"), std::pair(true, std::string("HU")));
+  EXPECT_EQ(unitsOf("letter.nrrd"), std::pair(true, std::string()));
+  EXPECT_EQ(unitsOf("letter.vtk"), std::pair(false, std::string()));
+  EXPECT_TRUE(unitsOf("letter.vtk", {.spacing = glm::dvec3(1.0)}).first);
+}
+
 TEST(ScanFile, DicomSeriesWithAGapAreRefused) {
   const TemporaryFolder folder;
   const ScanPlace place = placeOf("LPS");

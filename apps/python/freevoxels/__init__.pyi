@@ -94,6 +94,8 @@ class _Light(TypedDict, total=False):
 
 class _Method(TypedDict, total=False):
     mode: Literal["volume", "mip", "average"]
+    slice: str | tuple[Literal["x", "y", "z"], float | str]
+    annotate: bool
     draw: Literal["gather", "splats"]
     composite: Literal["normalised", "additive", "sorted"]
     attenuation: Literal["bilinear", "nearest"]
