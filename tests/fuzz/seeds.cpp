@@ -224,6 +224,7 @@ void writeStacks(const fs::path& tiff, const fs::path& text) {
   writeFile(text / "ome", ome);
   writeFile(text / "name", "a_13x9x10_uint16.raw");
   writeFile(text / "layout", "13x9x10,i16,big,header=512");
+  writeFile(text / "slice", "z:37.5%");
 }
 
 void writeVtiImages(const fs::path& folder) {

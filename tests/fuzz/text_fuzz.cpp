@@ -1,4 +1,5 @@
 // Descriptions in TIFF, and names and options that say what a file without a header is.
+#include "engine/description/text_values.h"
 #include "engine/volume/raw_layout.h"
 #include "engine/volume/tiff_description.h"
 #include "tests/fuzz/fuzz_file.h"
@@ -17,6 +18,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   fuzz::tryTo([&] {
     const RawLayout layout = readRawLayout("raw", text);
     if (readRawLayout("raw", rawLayoutText(layout)) != layout) std::abort();
+  });
+  fuzz::tryTo([&] {
+    const SlicePlane plane = readSlicePlane("slice", text);
+    if (readSlicePlane("slice", slicePlaneText(plane)) != plane) std::abort();
   });
   return 0;
 }

@@ -114,7 +114,7 @@ class Module(Files):
         sequence = freevoxels.Sequence(volume, **options)
         images = {}
         for place in reversed(range(len(sequence))):  # in another order
-            image, depth = sequence.render(place, depth=True)
+            image, depth = (sequence.render(place), None) if "slice" in options else sequence.render(place, depth=True)
             images[pathlib.Path(written[2 * place]).stem] = image, depth if "depth" in output.get("aov", "") else None
         return images
 
