@@ -1,5 +1,4 @@
 #include <CLI/CLI.hpp>
-#include <nlohmann/json.hpp>
 
 #include "apps/common/text_table.h"
 #include "apps/freevoxels/commands.h"
@@ -20,15 +19,11 @@ void PresetsCommand::add(CLI::App& app) {
 void PresetsCommand::run() const {
   using enum TextTable::Align;
   TextTable table{.columns = {Left, Left}, .rows = {{"NAME", "WHAT"}}};
-  nlohmann::ordered_json all = nlohmann::ordered_json::object();
-  for (const TransferPreset& preset : transferPresets()) {
-    table.rows.push_back({std::string(preset.name), curvesOf(preset).description});
-    all[std::string(preset.name)] = nlohmann::ordered_json::parse(preset.json);
-  }
   if (json_) {
-    fmt::print("{}\n", all.dump(2));
+    fmt::print("{}\n", presetsJson());
     return;
   }
+  for (const TransferPreset& preset : transferPresets()) table.rows.push_back({std::string(preset.name), curvesOf(preset).description});
   for (const std::string& line : table.lines()) fmt::print("{}\n", line);
 }
 

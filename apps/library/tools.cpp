@@ -3,6 +3,7 @@
 #include "apps/common/program.h"
 #include "apps/common/scene_tools.h"
 #include "apps/library/translation.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels::v1 {
 
@@ -50,6 +51,10 @@ std::string info(const std::filesystem::path& volume, std::string_view scene) {
 
 std::string devices() {
   return translated([&] { return toJson(findDevices()).dump(2, ' ', false, Json::error_handler_t::replace); });
+}
+
+std::string presets() {
+  return translated([] { return presetsJson(); });
 }
 
 void merge(const std::vector<std::string>& parts, const std::vector<std::string>& images, std::string_view scene) {

@@ -10,6 +10,7 @@
 #include "apps/python/python_values.h"
 #include "apps/python/python_volume.h"
 #include "engine/core/error.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -38,6 +39,10 @@ py::object info(const py::object& volume, const py::args& more, const py::object
     found = infoOf(name, options);
   }
   return pythonOf(found);
+}
+
+py::object presets() {
+  return pythonOf(Json::parse(presetsJson()));
 }
 
 void bakeOpened(const PythonVolume& volume, const std::string& file, const Json& options, const Progress& report) {
@@ -102,6 +107,10 @@ void addTools(py::module_& module) {
              "devices()\n--\n\n"
              "The Vulkan devices of this machine, as 'freevoxels devices --json' lists them: dictionaries with index, name, type, uuid,\n"
              "driver, memory_bytes, usable and rejections, the reasons why one is not usable.");
+  module.def("presets", &presets,
+             "presets()\n--\n\n"
+             "The transfer functions that transfer_function= takes by name, as 'freevoxels presets --json' prints them: a dictionary of\n"
+             "functions by their names. presets()['ct-bone']['description'] says what one is for. Changed, it can be transfer_function=.");
   module.def(
       "info", &info, "volume"_a, "check"_a = false,
       "info(volume, *, check=False, **kwargs)\n--\n\n"

@@ -1,5 +1,5 @@
 #pragma once
-// The module's functions beside drawing: devices(), info(), bake(), convert() and merge().
+// The module's functions beside drawing: devices(), presets(), info(), bake(), convert() and merge().
 
 #include <pybind11/pybind11.h>
 

@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <fstream>
 #include <iterator>
+#include <nlohmann/json.hpp>
 
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
@@ -69,6 +70,12 @@ std::string presetSpelling(std::string_view name) {
 const TransferPreset* presetNamed(std::string_view name) {
   const auto found = std::ranges::find(transferPresets(), presetSpelling(name), &TransferPreset::name);
   return found == transferPresets().end() ? nullptr : &*found;
+}
+
+std::string presetsJson() {
+  nlohmann::ordered_json functions = nlohmann::ordered_json::object();
+  for (const TransferPreset& preset : transferPresets()) functions[std::string(preset.name)] = nlohmann::ordered_json::parse(preset.json);
+  return functions.dump(2);
 }
 
 TransferCurves curvesOf(const TransferPreset& preset) {

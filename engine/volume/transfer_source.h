@@ -19,6 +19,8 @@ struct TransferPreset {
 std::span<const TransferPreset> transferPresets();
 /// The preset of this name, in which case does not matter, nor whether words are joined by -, _ or a space; null if there is none.
 const TransferPreset* presetNamed(std::string_view name);
+/// All presets as JSON: an object of their functions by their names.
+std::string presetsJson();
 /// The curves of a preset.
 TransferCurves curvesOf(const TransferPreset& preset);
 

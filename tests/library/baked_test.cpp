@@ -95,6 +95,8 @@ TEST_F(BakedTest, FilesAndFactsAreThoseOfTheCommandLine) {
   v1::merge({path + "/part_1.exr", path + "/part_0.exr"}, {path + "/ours.png"});
   EXPECT_TRUE(test::readBytes(folder_ / "ours.png") == test::readBytes(folder_ / "theirs.png"));
   EXPECT_NE(v1::devices().find(v1::Context().device()), std::string::npos);
+  ASSERT_EQ(std::system((inFolder + "'" FREEVOXELS_PROGRAM "' presets --json > presets.txt").c_str()), 0);
+  EXPECT_EQ(v1::presets() + "\n", test::readBytes(folder_ / "presets.txt"));
 
   const std::vector<float> values(20 * 13 * 9, 1.0f);
   const v1::Volume volume = v1::Volume::copy(values, {20, 13, 9});

@@ -1,4 +1,4 @@
-"""What the module does beside drawing: bake(), convert(), info(), merge(), devices(). Files and facts are those of the command line."""
+"""What the module does beside drawing: bake(), convert(), info(), merge(), devices(), presets(). Files and facts are those of the command line."""
 
 import json
 import os
@@ -30,6 +30,17 @@ class ToolsTest(unittest.TestCase):
     def test_devices_are_those_of_the_command_line(self):
         self.assertEqual(freevoxels.devices(), self.run_program("devices", "--json"))
         self.assertIn(freevoxels.Renderer(freevoxels.Volume([[[1.0, 2.0]]])).device, [device["name"] for device in freevoxels.devices()])
+
+    def test_presets_are_those_of_the_command_line_and_can_be_changed(self):
+        presets = freevoxels.presets()
+        self.assertEqual(presets, self.run_program("presets", "--json"))
+        for name, function in presets.items():
+            self.assertRegex(function["description"], r"\w{3,}", name)
+        look = {"resolution": 24, "size": (40, 30), "unlit": True}
+        named = freevoxels.render("procedural:shells", transfer_function="viridis", **look)
+        np.testing.assert_array_equal(named, freevoxels.render("procedural:shells", transfer_function=presets["viridis"], **look))
+        presets["viridis"]["opacity"] = [[0, 0], [1, 0.9]]
+        self.assertFalse(np.array_equal(named, freevoxels.render("procedural:shells", transfer_function=presets["viridis"], **look)))
 
     def test_baked_files_have_the_bytes_of_the_command_lines(self):
         self.run_program("generate", "cloud", self.folder / "a.vdb", "--resolution", "12x20x9")

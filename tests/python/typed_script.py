@@ -56,7 +56,8 @@ def draw(folder: pathlib.Path) -> None:
     freevoxels.bake(array, folder / "array.fvx", spacing=(1, 1, 2.5), keep_scalars=True, density_scale=0.1, progress=report)
     facts: dict[str, Any] = freevoxels.info(folder / "array.fvx", check=True)
     found: list[dict[str, Any]] = freevoxels.devices()
-    assert facts["levels"] and found
+    presets: dict[str, dict[str, Any]] = freevoxels.presets()
+    assert facts["levels"] and found and presets
     try:
         freevoxels.convert("procedural:cloud", folder / "cloud.nrrd", resolution=8, progress=lambda stage, fraction: None)
         freevoxels.merge([folder / "array.fvx"], folder / "merged.png", exposure=1)

@@ -302,6 +302,10 @@ FREEVOXELS_API std::string info(const std::filesystem::path& volume, std::string
 /// The Vulkan devices of this machine: the text of `freevoxels devices --json`.
 FREEVOXELS_API std::string devices();
 
+/// The transfer functions that "transfer-function" takes by name: the text of `freevoxels presets --json`, an object of functions by their
+/// names, of which the key "description" says what each is for. Each of them is a value of "transfer-function", too.
+FREEVOXELS_API std::string presets();
+
 /// Adds up the files of sums that `freevoxels render --share I/N --sums` wrote, and writes the image, as `freevoxels merge` does. `scene`
 /// as for save().
 FREEVOXELS_API void merge(const std::vector<std::string>& parts, const std::vector<std::string>& images, std::string_view scene = "{}");
