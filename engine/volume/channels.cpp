@@ -22,10 +22,8 @@ std::array<float, 2> automaticWindow(const ScalarBricks& values) {
   summariseValues(channel);
   if (!(channel.minimum < channel.maximum)) return {std::min(channel.minimum, 0.0f), channel.maximum};
   const Histogram histogram = histogramOf(channel, kBins);
-  std::uint64_t above = 0;
-  int bin = kBins;
-  while (bin > 1 && double(above + histogram.counts[std::size_t(bin - 1)]) <= kBrighter * double(channel.activeVoxels))
-    above += histogram.counts[std::size_t(--bin)];
+  const auto active = double(channel.activeVoxels);
+  const std::size_t bin = histogram.binOfRank(active - std::floor(kBrighter * active)) + 1;
   return {channel.minimum, std::lerp(channel.minimum, channel.maximum, float(bin) / float(kBins))};
 }
 

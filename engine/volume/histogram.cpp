@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <numeric>
 
 #include "engine/core/error.h"
 
@@ -33,6 +34,16 @@ std::uint64_t Histogram::countBetween(double low, double high) const {
   const auto at = [this](double value) { return binOf(value, minimum, maximum, counts.size()); };
   return *std::max_element(counts.begin() + std::ptrdiff_t(at(low)),
                            counts.begin() + std::ptrdiff_t(at(high)) + 1);
+}
+
+std::uint64_t Histogram::count() const {
+  return std::accumulate(counts.begin(), counts.end(), std::uint64_t(0));
+}
+
+std::size_t Histogram::binOfRank(double rank) const {
+  std::size_t bin = 0;
+  for (std::uint64_t upTo = counts[0]; bin + 1 < counts.size() && double(upTo) < rank; upTo += counts[bin]) ++bin;
+  return bin;
 }
 
 Histogram histogramOf(const Volume& volume, int bins) {

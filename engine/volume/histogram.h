@@ -15,6 +15,10 @@ struct Histogram {
 
   /// The largest count among the bins that overlap `low` to `high`; 0 if there are none.
   std::uint64_t countBetween(double low, double high) const;
+  /// The number of all values.
+  std::uint64_t count() const;
+  /// The bin of the value that has so many values up to it, itself included; the last bin where there are fewer values.
+  std::size_t binOfRank(double rank) const;
 };
 
 /// The histogram of the active voxels, with at least 1 bin. The result does not depend on the number of

@@ -186,14 +186,20 @@ int lastClassOfAir(const Classes& classes) {
   return int(std::ranges::count_if(classes.means, isAir)) - 1;
 }
 
+/// The value at the beginning of a bin.
+double beginOf(const Histogram& histogram, std::size_t bin) {
+  const double range = double(histogram.maximum) - double(histogram.minimum);
+  return histogram.minimum + range * double(bin) / double(histogram.counts.size());
+}
+
 /// The value below which all voxels but the outliers are.
 double highestUsual(const Histogram& histogram) {
-  std::uint64_t all = 0, below = 0;
-  for (const std::uint64_t count : histogram.counts) all += count;
-  std::size_t bins = 0;
-  while (bins < histogram.counts.size() && double(below) < (1.0 - kOutliers) * double(all)) below += histogram.counts[bins++];
-  const double range = double(histogram.maximum) - double(histogram.minimum);
-  return histogram.minimum + range * double(bins) / double(histogram.counts.size());
+  return beginOf(histogram, histogram.binOfRank((1.0 - kOutliers) * double(histogram.count())) + 1);
+}
+
+/// The value above which all voxels but the outliers are.
+double lowestUsual(const Histogram& histogram) {
+  return beginOf(histogram, histogram.binOfRank(std::floor(kOutliers * double(histogram.count())) + 1.0));
 }
 
 /// The values of a scan that projections show as black and white.
@@ -213,17 +219,6 @@ std::pair<double, double> visibleRange(const Volume& volume, IntensityProjection
     count += double(histogram.counts[i]);
   }
   return {volume.minimum, count > 0.0 ? sum / count : double(volume.maximum)};
-}
-
-/// The value above which all voxels but the outliers are.
-double lowestUsual(const Histogram& histogram) {
-  std::uint64_t all = 0, below = 0;
-  for (const std::uint64_t count : histogram.counts) all += count;
-  std::size_t bins = 0;
-  while (bins < histogram.counts.size() && double(below + histogram.counts[bins]) <= kOutliers * double(all))
-    below += histogram.counts[bins++];
-  const double range = double(histogram.maximum) - double(histogram.minimum);
-  return histogram.minimum + range * double(bins) / double(histogram.counts.size());
 }
 
 }  // namespace

@@ -26,6 +26,13 @@ TEST(Histogram, CountsEachValueInItsBinAndTheMaximumInTheLast) {
   EXPECT_EQ(histogram.counts, expected);
 }
 
+TEST(Histogram, TheBinOfARankHasTheValueWithSoManyUpToIt) {
+  const Histogram histogram = histogramOf(staircase(), 9);
+  EXPECT_EQ(histogram.count(), 330u);
+  for (const auto& [rank, bin] : {std::pair(0.0, 0u), {6.0, 0u}, {6.5, 1u}, {18.0, 1u}, {19.0, 2u}, {330.0, 8u}, {1e9, 8u}})
+    EXPECT_EQ(histogram.binOfRank(rank), bin) << rank;
+}
+
 TEST(Histogram, LeavesOutWhatIsInactive) {
   const Volume volume = makeVolume({40, 1, 1}, glm::dmat4(1.0),
                                    [](int x, int, int) { return x % 4 == 0 ? float(x) : kInactiveVoxel; });
