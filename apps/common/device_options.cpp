@@ -33,19 +33,18 @@ std::filesystem::path cacheFolder() {
   return {};
 }
 
-std::uint64_t limitBytes(std::optional<int> mebibytes) {
-  return mebibytes ? std::uint64_t(*mebibytes) << 20 : std::numeric_limits<std::uint64_t>::max();
-}
-
 }  // namespace
 
+std::uint64_t DeviceOptions::memoryBytes() const {
+  return memoryLimit ? std::uint64_t(*memoryLimit) << 20 : std::numeric_limits<std::uint64_t>::max();
+}
+
 std::unique_ptr<Device> DeviceOptions::open(const Instance& instance, std::span<const char* const> extensions) const {
-  return std::make_unique<Device>(instance, selector.value_or(""), DeviceLimits{.memory = limitBytes(memoryLimit)}, extensions,
-                                  cacheFolder());
+  return std::make_unique<Device>(instance, selector.value_or(""), DeviceLimits{.memory = memoryBytes()}, extensions, cacheFolder());
 }
 
 std::unique_ptr<Device> DeviceOptions::adopt(const Instance& instance, const AdoptedDevice& adopted) const {
-  return std::make_unique<Device>(instance, adopted, DeviceLimits{.memory = limitBytes(memoryLimit)}, cacheFolder());
+  return std::make_unique<Device>(instance, adopted, DeviceLimits{.memory = memoryBytes()}, cacheFolder());
 }
 
 bool validationRequested() {

@@ -18,6 +18,8 @@ struct DeviceOptions {
   std::optional<int> memoryLimit;  ///< MiB
 
   void add(CLI::App& app);
+  /// The limit in bytes, or that of all there is.
+  std::uint64_t memoryBytes() const;
   /// `extensions` are enabled beside the engine's own.
   std::unique_ptr<Device> open(const Instance& instance, std::span<const char* const> extensions = {}) const;
   /// Uses a device of the caller's, with these options' limit on its memory.

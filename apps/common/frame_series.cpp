@@ -75,7 +75,9 @@ bool FrameSeries::needsNoVolume(std::span<const FrameJob> jobs) const {
 }
 
 void FrameSeries::drawVolumes(std::span<const FrameJob> jobs) {
-  film_.emplace(options_.scene.description, volumesOf(jobs), options_.fixedView);
+  SceneDescription description = options_.scene.description;
+  description.input.memoryBytes = options_.device.memoryBytes();
+  film_.emplace(std::move(description), volumesOf(jobs), options_.fixedView);
   surveyFilm();
   const int turn = int(framesOfFirstVolume(jobs));
   VolumesAhead volumes(film_->inputs(), [this, turn, jobs](const std::string& input) {

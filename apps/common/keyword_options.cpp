@@ -137,6 +137,7 @@ KeywordOptions::KeywordOptions(const std::vector<Json>& layers, const Sections& 
   Reader reader(*this, sections);
   for (const Json& layer : layers) reader.read(layer);
   reader.readSceneFile();
+  if (device.memoryLimit) scene.input.memoryBytes = device.memoryBytes();
   try {
     std::ranges::move(functionWarnings(scene), std::back_inserter(warnings));
   } catch (const Error&) {

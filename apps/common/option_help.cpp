@@ -26,9 +26,8 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"series", "Series of a DICOM folder, by its UID [the only one]"},
     {"time-step", "Time step of a scan with several, from 0 [0]"},
     {"pyramid-level",
-     "Level of an OME-Zarr with several resolutions, from 0, the finest; --clip-box counts its voxels [the finest with at most 1.5 voxels "
-     "a "
-     "pixel that fits in a quarter of the memory]"},
+     "Level of an OME-Zarr with several resolutions, from 0, the finest; --clip-box then counts its voxels [the finest with at most 1.5 "
+     "voxels a pixel that fits in a quarter of the memory]"},
     {"spacing", "Millimetres between the voxels of a scan along the axes of its box [as its file says]"},
     {"no-data", "Value of voxels that hold no data [of scans the value that they are filled up with around what was measured]"},
     {"clip-box",

@@ -148,6 +148,18 @@ glm::dvec3 spacingOf(const ScanHeader& scan) {
   return spacing;
 }
 
+const char* nameOf(ScanSpace space) {
+  switch (space) {
+    case ScanSpace::Patient:
+      return "millimetres, x towards the left of the patient, y the back, z the head (LPS)";
+    case ScanSpace::Millimetres:
+      return "millimetres along the axes of the file";
+    case ScanSpace::File:
+      break;
+  }
+  return "the axes of the file, in a unit that it does not say";
+}
+
 /// Of the axes of the box, of length 1.
 std::array<glm::dvec3, 3> directionsOf(const ScanHeader& scan) {
   std::array<glm::dvec3, 3> directions;
@@ -162,7 +174,10 @@ nlohmann::ordered_json toJson(const ScanHeader& scan) {
   json["origin"] = triple(glm::dvec3(scan.indexToWorld[3]));
   json["spacing"] = triple(spacingOf(scan));
   for (const glm::dvec3& direction : directionsOf(scan)) json["directions"].push_back(triple(direction));
+  json["space"] = scan.space == ScanSpace::Patient ? "LPS" : "file";
+  json["unit"] = scan.space == ScanSpace::File ? nlohmann::ordered_json() : nlohmann::ordered_json("millimeter");
   if (scan.rescale) json["rescale"] = {scan.rescale->x, scan.rescale->y};
+  if (scan.areColors) json["colors"] = true;
   for (const ScanChannel& channel : scan.channels) {
     nlohmann::ordered_json one{{"name", channel.name}, {"shown", channel.isShown}};
     if (channel.color) one["color"] = triple(glm::dvec3(*channel.color));
@@ -189,10 +204,10 @@ std::vector<std::string> linesOf(const ScanHeader& scan) {
     std::vector<std::string> channels;
     for (std::size_t i = 0; i < scan.channels.size(); ++i)
       channels.push_back(fmt::format("{} {}{}", i, printable(scan.channels[i].name), scan.channels[i].isShown ? "" : " (not shown)"));
-    lines.push_back(fmt::format("channels    {}", fmt::join(channels, ", ")));
+    lines.push_back(fmt::format("channels    {}{}", fmt::join(channels, ", "), scan.areColors ? "; they are colours" : ""));
   }
   if (scan.rescale) lines.push_back(fmt::format("rescale     values of the file x {:.6g} + {:.6g}", scan.rescale->x, scan.rescale->y));
-  lines.emplace_back("space       millimetres, x towards the left of the patient, y the back, z the head (LPS)");
+  lines.push_back(fmt::format("space       {}", nameOf(scan.space)));
   lines.push_back("origin      " + triple(glm::dvec3(scan.indexToWorld[3])));
   lines.push_back("spacing     " + triple(spacingOf(scan)));
   const std::array<glm::dvec3, 3> directions = directionsOf(scan);

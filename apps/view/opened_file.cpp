@@ -58,6 +58,7 @@ void openVolume(ViewState& state, const std::string& file) {
     sequence = findSequence(file);
     scene.input.volume = sequence->files.front();
   }
+  scene.input.fixLevel(std::max(scene.camera.size.x, scene.camera.size.y));
   state.show(scene, sequence);
 }
 

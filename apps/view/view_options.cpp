@@ -3,6 +3,7 @@
 #include <spdlog/spdlog.h>
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <filesystem>
 
 #include "apps/common/frame_names.h"
@@ -50,6 +51,7 @@ std::optional<Sequence> takeVolume(SceneDescription& scene) {
   }
   if (!proceduralName(volume) && !std::filesystem::exists(volume))
     fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", volume);
+  scene.input.fixLevel(std::max(scene.camera.size.x, scene.camera.size.y));
   return sequence;
 }
 

@@ -11,6 +11,7 @@
 #include "engine/octree/volume_limits.h"
 #include "engine/storage/baked_source.h"
 #include "engine/storage/baked_volume.h"
+#include "engine/volume/colors.h"
 #include "engine/volume/procedural.h"
 
 namespace freevoxels {
@@ -55,6 +56,23 @@ Volume openClippedBaked(const InputDescription& input, std::uint64_t maximumVoxe
   Volume part = readBakedPart(file, *input.clipBox);
   part.isPart = true;
   return input.clip(std::move(part));
+}
+
+Volume readScanOf(const InputDescription& input, std::uint64_t maximumVoxels, const ReadRequest& what, const Progress& progress) {
+  const auto refuse = [&](const char* name) {
+    fail(ErrorKind::Usage, "{} is of OpenVDB files, and '{}' is a scan without such grids: leave it out", Parameter(name), input.volume);
+  };
+  if (what.more.temperature && what.more.temperature->isRequired) refuse("temperature-grid");
+  const bool mustHaveColors = what.more.albedo && what.more.albedo->isRequired;
+  ScanRequest request = input.scanRequest(maximumVoxels, progress);
+  request.labels = what.labels.of(false);
+  request.channels = what.channels;
+  request.imageEdge = what.imageEdge;
+  request.asColors = what.more.albedo.has_value();
+  if (mustHaveColors && what.more.albedo->name != kColorsName) refuse("albedo-grid");
+  Volume volume = readScan(input.volume, request);
+  if (mustHaveColors && !(volume.albedo && volume.albedo->name == kColorsName)) refuse("albedo-grid");
+  return volume;
 }
 
 }  // namespace
@@ -106,6 +124,8 @@ VolumeKind InputDescription::kind() const {
 ScanRequest InputDescription::scanRequest(std::uint64_t maximumVoxels, const Progress& progress) const {
   return {.array = grid.value_or(""),
           .pyramidLevel = pyramidLevel,
+          .memoryBytes = memoryBytes,
+          .clipBox = clipBox,
           .raw = raw,
           .series = series,
           .timeStep = timeStep,
@@ -146,16 +166,7 @@ Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& wh
   const VolumeKind kindOfVolume = kind();
   if (const auto file = baked()) return openBaked(file, maximumVoxels, level, progress);
   if (kindOfVolume == VolumeKind::Baked) return openClippedBaked(*this, maximumVoxels, progress);
-  if (kindOfVolume == VolumeKind::Scan) {
-    for (const auto& [wanted, name] : {std::pair(&what.more.temperature, "temperature-grid"), std::pair(&what.more.albedo, "albedo-grid")})
-      if (*wanted && (*wanted)->isRequired)
-        fail(ErrorKind::Usage, "{} is of OpenVDB files, and '{}' is a scan, which has one grid: leave it out", Parameter(name), volume);
-    ScanRequest request = scanRequest(maximumVoxels, progress);
-    request.labels = what.labels.of(false);
-    request.channels = what.channels;
-    request.imageEdge = what.imageEdge;
-    return clip(readScan(volume, request));
-  }
+  if (kindOfVolume == VolumeKind::Scan) return clip(readScanOf(*this, maximumVoxels, what, progress));
   if (kindOfVolume == VolumeKind::OpenVdb) {
     ReadRequest request = what;
     request.grid = grid.value_or("");
@@ -173,6 +184,20 @@ Volume InputDescription::open(std::uint64_t maximumVoxels, const ReadRequest& wh
   if (made.activeVoxels == 0 && !made.temperature)
     fail(ErrorKind::Usage, "all voxels of {} have the value of {}: leave it out", volume, Parameter("no-data"));
   return clip(std::move(made));
+}
+
+void InputDescription::fixLevel(int imageEdge) {
+  if (pyramidLevel || kind() != VolumeKind::Scan) return;
+  try {
+    ScanRequest request = scanRequest(kMaxNumberedVoxels);
+    request.imageEdge = imageEdge;
+    const ScanHeader header = readScanHeader(volume, request);
+    if (header.levels.size() < 2) return;
+    pyramidLevel = header.level;
+    if (header.part) clipBox = header.part;
+  } catch (const Error&) {
+    // Whoever opens it fails with the same sentence.
+  }
 }
 
 Volume InputDescription::clip(Volume whole) const {
@@ -228,7 +253,7 @@ InputUnits InputDescription::units() const {
   try {
     if (volume.empty() || kind() != VolumeKind::Scan) return {};
     const ScanHeader header = readScanHeader(volume, scanRequest(kMaxNumberedVoxels));
-    return {.length = header.inMillimetres ? "mm" : "", .value = header.valueUnit};
+    return {.length = header.space != ScanSpace::File ? "mm" : "", .value = header.valueUnit};
   } catch (const Error&) {
     return {};  // a file that is no longer there
   }

@@ -71,11 +71,16 @@ struct InputDescription {
   std::optional<int> timeStep;           ///< of a scan with several, at least 0
   std::optional<glm::dvec3> spacing;     ///< of a scan, above 0; else as its file says
   std::optional<int> pyramidLevel;       ///< of a scan with several resolutions, at least 0, the finest; else as the image needs it
+  /// What reading may use, as far as that can be chosen, such as the level of a scan. It is no option of the input.
+  std::uint64_t memoryBytes = std::numeric_limits<std::uint64_t>::max();
 
   /// Fails without a volume.
   void checkGiven() const;
   /// Fails for fields that do not apply to this volume.
   void check() const;
+  /// Gives the level of a scan with several that is read for an image of this many pixels along its longer edge, and the clip box in its
+  /// voxels, so that neither depends on the image from now on. Leaves it to open() to say what is wrong with the file.
+  void fixLevel(int imageEdge);
   /// The part of a volume in the clip box and behind the clip plane. Fails if there is none.
   Volume clip(Volume whole) const;
   bool isClipped() const { return clipBox || clipPlane; }

@@ -189,6 +189,7 @@ class DicomScan : public ScanReader {
     header_ = headerOf(slices_.front().file, *io);
     checkPayload(slices_.front().file, header_.samples(), fs::file_size(slices_.front().file), true);
     header_.timeSteps = timeSteps;
+    header_.space = ScanSpace::Patient;
     header_.format = places == 1 ? "DICOM" : fmt::format("DICOM series of {} slices", places);
     header_.type = sampleTypeOf(io->GetInternalComponentType()).value_or(SampleType::U16);
     if (io->GetRescaleSlope() != 1.0 || io->GetRescaleIntercept() != 0.0)
@@ -214,7 +215,7 @@ class DicomScan : public ScanReader {
 
   std::uint64_t bytesToRead() const override {
     const std::uint64_t samples = header_.samples() / std::uint64_t(slices_.size() > 1 ? header_.dimensions.z : 1);
-    return 2 * samples * sizeof(double);
+    return 2 * samples * sizeof(double) * std::uint64_t(header_.components);
   }
 
  private:
@@ -230,19 +231,23 @@ class DicomScan : public ScanReader {
     return io;
   }
 
-  static void readFile(const fs::path& file, SampleBlock block, const SampleSink& sink) {
+  void readFile(const fs::path& file, SampleBlock block, const SampleSink& sink) const {
     const auto io = open(file);
     const ScanHeader header = headerOf(file, *io);
     const glm::ivec3 size = header.dimensions;
+    if (header.components != header_.components)
+      fail(ErrorKind::Input, "'{}' has {} numbers a pixel, and the first slice of the series {}: leave it out", file.string(),
+           header.components, header_.components);
     if (size != block.extent)
       fail(ErrorKind::Input, "'{}' has {} x {} pixels, and the first slice of the series {} x {}: leave it out", file.string(), size.x,
            size.y, block.extent.x, block.extent.y);
     checkPayload(file, header.samples(), fs::file_size(file), true);
     wantAll(*io);
-    const auto buffer = std::make_unique_for_overwrite<std::byte[]>(header.samples() * bytesOf(header.type));
+    const auto buffer = std::make_unique_for_overwrite<std::byte[]>(header.samples() * header.bytesOfVoxel());
     quietItk(file, [&] { io->Read(buffer.get()); });
     block.samples = buffer.get();
     block.type = header.type;
+    block.components = header.components;
     sink(block);
   }
 

@@ -91,15 +91,12 @@ inline std::optional<double> numberIn(const itk::MetaDataDictionary& dictionary,
   return end == text.c_str() ? std::nullopt : std::optional(number);
 }
 
-/// The box and its place, of an image of which ITK has read the header. Fails for values that are no single numbers.
+/// The box and its place, of an image of which ITK has read the header. Fails for values that are neither single numbers nor colours.
 inline ScanHeader headerOf(const std::filesystem::path& file, const itk::ImageIOBase& io) {
-  if (io.GetNumberOfComponents() != 1)
-    fail(ErrorKind::Input, "'{}' has {} numbers a voxel ({}), and scans have one: write one of them, or their magnitude, into a file",
-         file.string(), io.GetNumberOfComponents(), itk::ImageIOBase::GetPixelTypeAsString(io.GetPixelType()));
   const std::optional<SampleType> type = sampleTypeOf(io.GetComponentType());
   if (!type) fail(ErrorKind::Input, "'{}' has values of a type that no scan has: convert them to whole numbers or floats", file.string());
-  ScanHeader header{.type = *type};
-  header.inMillimetres = true;
+  ScanHeader header{.type = *type, .components = int(std::min(io.GetNumberOfComponents(), 1u << 20))};
+  checkComponents(file, header.components, header.type);
   glm::i64vec3 dimensions(1);
   for (unsigned axis = 0; axis < std::min(io.GetNumberOfDimensions(), 3u); ++axis) {
     dimensions[int(axis)] = std::int64_t(io.GetDimensions(axis));

@@ -52,10 +52,15 @@ const char* nameOf(ItkFormat format) {
   return "VTK";
 }
 
-/// Nothing for types of vectors, colours and complex numbers, and of more than 64 bits.
+/// Of NIfTI.
+constexpr int kRgbOfNifti = 128, kRgbaOfNifti = 2304;
+
+/// Nothing for types of vectors and complex numbers, and of more than 64 bits.
 std::optional<SampleType> niftiType(int code) {
   switch (code) {
     case 2:
+    case kRgbOfNifti:
+    case kRgbaOfNifti:
       return SampleType::U8;
     case 4:
       return SampleType::I16;
@@ -130,7 +135,7 @@ Payload checkMetaHeader(const std::filesystem::path& file) {
   return payload;
 }
 
-/// Likewise the library of NIfTI. Fails for values that are no single numbers as well.
+/// Likewise the library of NIfTI. Fails for values that are neither single numbers nor colours as well.
 void checkNiftiHeader(const std::filesystem::path& file) {
   constexpr std::size_t kBytes = 348, kType = 70;
   const std::string start = startOf(file, kBytes);
@@ -139,8 +144,9 @@ void checkNiftiHeader(const std::filesystem::path& file) {
   const int type = std::uint8_t(start[kType + (isSwapped ? 1 : 0)]) | std::uint8_t(start[kType + (isSwapped ? 0 : 1)]) << 8;
   if (!niftiType(type))
     fail(ErrorKind::Input,
-         "'{}' has values of NIfTI's type {}, and scans have one whole number or float of up to 64 bits a voxel: convert it", file.string(),
-         type);
+         "'{}' has values of NIfTI's type {}, and scans have one whole number or float of up to 64 bits a voxel, or colours of 8 bits: "
+         "convert it",
+         file.string(), type);
 }
 
 class ItkScan : public ScanReader {
@@ -157,11 +163,11 @@ class ItkScan : public ScanReader {
     });
     header_ = headerOf(path_, *io_);
     header_.format = nameOf(format);
-    header_.inMillimetres = format != ItkFormat::Vtk;  // whose files have no units
+    takeSpace();
     takeTimeSteps();
     describeNifti();
     if (payload.bytes != Payload::kUnknown)
-      checkPayload(path_, header_.samples() * std::uint64_t(header_.timeSteps) * bytesOf(header_.type), payload.bytes,
+      checkPayload(path_, header_.samples() * std::uint64_t(header_.timeSteps) * header_.bytesOfVoxel(), payload.bytes,
                    payload.isCompressed);
   }
 
@@ -171,13 +177,17 @@ class ItkScan : public ScanReader {
     wantAll(*io_);
     const auto buffer = std::make_unique_for_overwrite<std::byte[]>(bytesToRead());
     readWhole({buffer.get(), bytesToRead()});
-    const std::uint64_t step = header_.samples() * bytesOf(header_.type) * std::uint64_t(part.timeStep);
-    sink({.samples = buffer.get() + step, .type = header_.type, .first = glm::ivec3(0), .extent = header_.dimensions});
+    const std::uint64_t step = header_.samples() * header_.bytesOfVoxel() * std::uint64_t(part.timeStep);
+    sink({.samples = buffer.get() + step,
+          .type = header_.type,
+          .components = header_.components,
+          .first = glm::ivec3(0),
+          .extent = header_.dimensions});
   }
 
   std::uint64_t bytesToRead() const override {
     if (format_ == ItkFormat::Nifti) return bytesToReadNifti(header_);
-    return header_.samples() * bytesOf(header_.type) * std::uint64_t(header_.timeSteps);
+    return header_.samples() * header_.bytesOfVoxel() * std::uint64_t(header_.timeSteps);
   }
 
  private:
@@ -201,6 +211,14 @@ class ItkScan : public ScanReader {
     if (std::ranges::find(once, kOne) != once.end() && readOver(kOther) != once) failDamaged(path_, "its values end too early");
   }
 
+  /// NRRD says whether its axes are those of a patient; MetaImage and NIfTI have no others.
+  void takeSpace() {
+    if (format_ == ItkFormat::Vtk) return;
+    const std::string space = textIn(io_->GetMetaDataDictionary(), "NRRD_space");
+    const bool isOfPatient = space.find("posterior") != std::string::npos || space.find("anterior") != std::string::npos;
+    header_.space = format_ != ItkFormat::Nrrd || isOfPatient ? ScanSpace::Patient : ScanSpace::File;
+  }
+
   /// A fourth axis is time; of others there must be one step.
   void takeTimeSteps() {
     constexpr unsigned kTime = 3;
@@ -222,7 +240,13 @@ class ItkScan : public ScanReader {
     const auto& dictionary = io_->GetMetaDataDictionary();
     const double slope = numberIn(dictionary, "scl_slope").value_or(0.0), intercept = numberIn(dictionary, "scl_inter").value_or(0.0);
     if (slope != 0.0 && (slope != 1.0 || intercept != 0.0)) header_.rescale = glm::dvec2(slope, intercept);
-    if (const auto code = numberIn(dictionary, "datatype")) header_.type = niftiType(int(*code)).value_or(header_.type);
+    const int code = int(numberIn(dictionary, "datatype").value_or(0.0));
+    header_.type = niftiType(code).value_or(header_.type);
+    // Other vectors of NIfTI have all values of one component behind those of another.
+    if (header_.components > 1 && code != kRgbOfNifti && code != kRgbaOfNifti)
+      fail(ErrorKind::Input, "'{}' has vectors, and scans have single numbers or colours: write their magnitude into a file",
+           path_.string());
+    if (header_.components > 1) header_.rescale.reset();
   }
 
   const std::filesystem::path path_;

@@ -1,6 +1,7 @@
 // OME-Zarr: images of several resolutions, by https://ngff.openmicroscopy.org/0.4/ and /0.5/, and those of earlier versions that have no
 // units and transforms.
 #include <algorithm>
+#include <cctype>
 #include <charconv>
 #include <cmath>
 #include <functional>
@@ -74,6 +75,23 @@ ScanChannel channelOf(const NgffJson& json) {
   return channel;
 }
 
+/// Whether channels are said to be the red, green and blue of colours: by their names, or as programs write those of 8 bits, of which all
+/// values are shown.
+bool areChannelsOfColors(const std::vector<ScanChannel>& channels, SampleType type) {
+  constexpr std::array<std::string_view, 3> kNames{"red", "green", "blue"};
+  if (!areColors(int(channels.size()), type)) return false;
+  bool areNamed = true, areShownWhole = type == SampleType::U8;
+  for (std::size_t c = 0; c < kNames.size(); ++c) {
+    std::string name = channels[c].name;
+    std::ranges::transform(name, name.begin(), [](unsigned char character) { return char(std::tolower(character)); });
+    areNamed &= name == kNames[c] || name == kNames[c].substr(0, 1);
+    glm::vec3 pure(0.0f);
+    pure[int(c)] = 1.0f;
+    areShownWhole &= channels[c].color == pure && channels[c].window.value_or(std::array{0.0f, 255.0f}) == std::array{0.0f, 255.0f};
+  }
+  return areNamed || areShownWhole;
+}
+
 class NgffScan : public ScanReader {
  public:
   NgffScan(const std::filesystem::path& file, const ScanRequest& request) : path_(file) {
@@ -95,6 +113,10 @@ class NgffScan : public ScanReader {
     ZarrBox box{.axes = axes_.space, .place = std::vector<std::uint64_t>(axes_.count, 0)};
     if (axes_.time >= 0) box.place[std::size_t(axes_.time)] = std::uint64_t(part.timeStep);
     if (axes_.channel >= 0) box.place[std::size_t(axes_.channel)] = std::uint64_t(part.channel);
+    if (part.box) {
+      box.first = part.box->first;
+      box.last = part.box->last;
+    }
     arrays_[std::size_t(header_.level)]->read(box, sink, progress);
   }
 
@@ -136,9 +158,9 @@ class NgffScan : public ScanReader {
     if (name.size() == 1 && name[0] >= 'x' && name[0] <= 'z') {
       const int axis = name[0] - 'x';
       axes_.space[std::size_t(axis)] = number;
-      const std::optional<double> millimetres = millimetresOf(stringOf(json, "unit"));
-      axes_.millimetres[axis] = millimetres.value_or(1.0);
-      if (axis == 0) header_.inMillimetres = millimetres.has_value();
+      const std::optional<double> unit = millimetresOf(stringOf(json, "unit"));
+      axes_.millimetres[axis] = unit.value_or(1.0);
+      if (unit) header_.space = ScanSpace::Millimetres;
     } else if (type == "time" || name == "t") {
       axes_.time = number;
     } else if (type == "channel" || name == "c") {
@@ -217,30 +239,52 @@ class NgffScan : public ScanReader {
     if (channels_ < 2) return;
     const bool isDescribed = described.is_array() && described.size() == std::size_t(channels_);
     for (int i = 0; i < channels_; ++i) header_.channels.push_back(isDescribed ? channelOf(described[std::size_t(i)]) : ScanChannel());
+    header_.areColors = areChannelsOfColors(header_.channels, arrays_.front()->layout().type);
   }
 
-  /// The finest level that fits into a quarter of the machine's memory and is not much finer than the image.
+  /// The voxels of a level that are read: the clip box, of which the numbers are those of the level that is asked for, or of the finest.
+  VoxelBox boxOf(const ScanRequest& request, int level) const {
+    const glm::i64vec3 extent(header_.levels[std::size_t(level)]);
+    if (!request.clipBox) return {.first = glm::ivec3(0), .last = glm::ivec3(extent - 1l)};
+    const glm::i64vec3 counted(header_.levels[std::size_t(request.pyramidLevel.value_or(0))]), first(request.clipBox->first);
+    const glm::i64vec3 end = glm::min(glm::i64vec3(request.clipBox->last) + 1l, counted);
+    return {.first = glm::ivec3(first * extent / counted), .last = glm::ivec3((end * extent + counted - 1l) / counted - 1l)};
+  }
+
+  void checkLevelAndBox(const ScanRequest& request) const {
+    const int count = int(header_.levels.size()), level = request.pyramidLevel.value_or(0);
+    if (level >= count)
+      fail(ErrorKind::Usage, "{} is none of '{}', which has {} level{}, counted from 0, the finest",
+           Parameter("pyramid-level", fmt::format("{}", level)), path_.string(), count, count == 1 ? "" : "s");
+    const glm::ivec3 size = header_.levels[std::size_t(level)];
+    if (request.clipBox && glm::any(glm::greaterThanEqual(request.clipBox->first, size)))
+      fail(ErrorKind::Usage, "{} has no voxel of level {} of '{}', which has {} x {} x {}", Parameter("clip-box"), level, path_.string(),
+           size.x, size.y, size.z);
+  }
+
+  /// The finest level that fits into a quarter of the memory and is not much finer than the image.
   void chooseLevel(const ScanRequest& request) {
     constexpr double kFinest = 1.5;  // voxels a pixel
+    checkLevelAndBox(request);
     const int count = int(header_.levels.size());
-    if (request.pyramidLevel && *request.pyramidLevel >= count)
-      fail(ErrorKind::Usage, "{} is none of '{}', which has {} level{}, counted from 0, the finest",
-           Parameter("pyramid-level", fmt::format("{}", *request.pyramidLevel)), path_.string(), count, count == 1 ? "" : "s");
     const double sums = header_.channels.empty() ? 1.0 : double(std::min(header_.channels.size(), kMostChannels)) + 4.0;
-    int level = 0;
-    const auto isTooFine = [&](const glm::ivec3& size) {
+    const auto isTooFine = [&](int level) {
+      const VoxelBox box = boxOf(request, level);
+      const glm::ivec3 size = box.last - box.first + 1;
       const double voxels = double(size.x) * double(size.y) * double(size.z);
-      return voxels * sums * sizeof(float) > double(machineMemoryBytes()) / 4.0 ||
+      return voxels * sums * sizeof(float) > double(std::min(machineMemoryBytes(), request.memoryBytes)) / 4.0 ||
              (request.maximumVoxels > 0 && voxels > double(request.maximumVoxels)) ||
              (request.imageEdge > 0 && std::max({size.x, size.y, size.z}) > kFinest * request.imageEdge);
     };
-    while (level + 1 < count && isTooFine(header_.levels[std::size_t(level)])) ++level;
+    int level = 0;
+    while (level + 1 < count && isTooFine(level)) ++level;
     if (!request.pyramidLevel && level > 0)
       header_.remarks.push_back(
           fmt::format("level {} of its {} is drawn, the finest that the image or memory has a use for ({} chooses "
                       "another)",
                       level, count, Parameter("pyramid-level")));
     takeLevel(request.pyramidLevel.value_or(level));
+    if (request.clipBox) header_.part = boxOf(request, header_.level);
   }
 
   void takeLevel(int number) {

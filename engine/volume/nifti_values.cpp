@@ -22,7 +22,7 @@ struct Close {
 };
 
 std::uint64_t bytesOfSlice(const ScanHeader& header) {
-  return std::uint64_t(header.dimensions.x) * std::uint64_t(header.dimensions.y) * bytesOf(header.type);
+  return std::uint64_t(header.dimensions.x) * std::uint64_t(header.dimensions.y) * header.bytesOfVoxel();
 }
 
 int slicesAtOnce(const ScanHeader& header) {
@@ -75,6 +75,7 @@ void readNiftiValues(const std::filesystem::path& file, const ScanHeader& header
     const glm::dvec2 rescale = header.rescale.value_or(glm::dvec2(1.0, 0.0));
     sink({.samples = buffer.data(),
           .type = header.type,
+          .components = header.components,
           .isSwapped = isSwapped,
           .slope = rescale.x,
           .intercept = rescale.y,

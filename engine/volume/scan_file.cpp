@@ -1,11 +1,8 @@
 #include "engine/volume/scan_file.h"
 
-#include <fmt/ranges.h>
-
 #include <algorithm>
 #include <array>
 #include <cctype>
-#include <charconv>
 #include <cmath>
 #include <fstream>
 #include <new>
@@ -16,7 +13,7 @@
 #include "engine/core/input_file.h"
 #include "engine/core/machine.h"
 #include "engine/core/printable.h"
-#include "engine/volume/histogram.h"
+#include "engine/volume/scan_channels.h"
 #include "engine/volume/scan_reader.h"
 #include "engine/volume/volume_of_scalars.h"
 
@@ -129,71 +126,14 @@ std::unique_ptr<ScanReader> open(const fs::path& file, Format format, const Scan
 void checkRequest(const fs::path& file, Format format, const ScanRequest& request) {
   if (request.series && format != Format::Dicom)
     fail(ErrorKind::Usage, "{} chooses among the series of a DICOM folder, and '{}' is none", Parameter("series"), file.string());
-  const bool hasChannels = format == Format::Zarr || format == Format::Tiff;
-  if (!request.array.empty() && format != Format::Vti && !hasChannels)
-    fail(ErrorKind::Usage, "{} chooses among several, and '{}' has one grid of values", Parameter("grid"), file.string());
   if (request.pyramidLevel && format != Format::Zarr)
     fail(ErrorKind::Usage, "{} chooses among the resolutions of OME-Zarr, and '{}' has one", Parameter("pyramid-level"), file.string());
-}
-
-/// "0 'DAPI', 1 'GFP'"
-std::string channelList(const ScanHeader& header) {
-  std::vector<std::string> words;
-  for (std::size_t i = 0; i < header.channels.size(); ++i)
-    words.push_back(header.channels[i].name.empty() ? fmt::format("{}", i) : fmt::format("{} '{}'", i, printable(header.channels[i].name)));
-  return fmt::format("{}", fmt::join(words, ", "));
-}
-
-/// The number of the channel with a name, or that has this number itself.
-int channelOf(const fs::path& file, const ScanHeader& header, const std::string& name, const Parameter& asked) {
-  const auto named = std::ranges::find(header.channels, name, &ScanChannel::name);
-  if (named != header.channels.end()) return int(named - header.channels.begin());
-  std::size_t number = 0;
-  const char* const end = name.data() + name.size();
-  const auto [stopped, error] = std::from_chars(name.data(), end, number);
-  if (error == std::errc() && stopped == end && number < std::max<std::size_t>(header.channels.size(), 1)) return int(number);
-  if (header.channels.empty()) fail(ErrorKind::Input, "{} is none of '{}', which has one channel, 0", asked, file.string());
-  fail(ErrorKind::Input, "{} is none of the channels of '{}': {}", asked, file.string(), channelList(header));
-}
-
-/// Channels that are drawn together, and their numbers in the file.
-struct ChosenChannels {
-  std::vector<ChannelStyle> styles;
-  std::vector<int> numbers;
-};
-
-/// Those that are asked for, or that the file shows, with the file's colours and windows where none are given. None where one is read
-/// alone.
-ChosenChannels chosenChannels(const fs::path& file, ScanHeader& header, const ScanRequest& request) {
-  ChosenChannels chosen;
-  if (!request.array.empty() || (request.channels.empty() && header.channels.empty())) return chosen;
-  const auto add = [&](ChannelStyle style, int number) {
-    if (!header.channels.empty()) {
-      const ScanChannel& described = header.channels[std::size_t(number)];
-      if (!style.color) style.color = described.color;
-      if (!style.window) style.window = described.window;
-    }
-    chosen.styles.push_back(std::move(style));
-    chosen.numbers.push_back(number);
-  };
-  for (const ChannelStyle& style : request.channels) add(style, channelOf(file, header, style.name, Parameter("channel", style.name)));
-  if (!request.channels.empty()) return chosen;
-  if (request.labels != nullptr)
-    fail(ErrorKind::Usage, "'{}' has channels, and labels are of one: choose it with {}: {}", file.string(), Parameter("grid", "NAME"),
-         channelList(header));
-  const bool showsSome = std::ranges::any_of(header.channels, &ScanChannel::isShown);
-  for (std::size_t i = 0; i < header.channels.size() && chosen.numbers.size() < kMostChannels; ++i)
-    if (header.channels[i].isShown || !showsSome)
-      add({.name = header.channels[i].name.empty() ? fmt::format("{}", i) : header.channels[i].name}, int(i));
-  header.remarks.push_back(fmt::format("{} of its {} channels are drawn ({} chooses others, {} draws one as a scan)", chosen.numbers.size(),
-                                       header.channels.size(), Parameter("channel"), Parameter("grid")));
-  return chosen;
 }
 
 /// The sides of the box that the header says, with the request's spacing.
 void space(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
   if (!spacing) return;
-  header.inMillimetres = true;
+  if (header.space == ScanSpace::File) header.space = ScanSpace::Millimetres;
   for (int axis = 0; axis < 3; ++axis) {
     const double length = glm::length(header.indexToWorld[axis]);
     glm::dvec3 unit(0.0);
@@ -201,29 +141,6 @@ void space(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
     const glm::dvec3 direction = length > 0.0 && std::isfinite(length) ? glm::dvec3(header.indexToWorld[axis]) / length : unit;
     header.indexToWorld[axis] = glm::dvec4(direction * (*spacing)[axis], 0.0);
   }
-}
-
-/// The window of a channel of which neither the file nor the user says one: from the end of the background, whose noise reaches as far
-/// above the most frequent value as below it, to the value that one voxel in a thousand exceeds. Nothing where most voxels are above that.
-std::optional<std::array<float, 2>> windowAboveBackground(const ScalarBricks& values) {
-  constexpr int kBins = 4096;
-  constexpr double kTail = 0.001, kMostAbove = 0.5;  // parts of the voxels
-  Volume channel{.dimensions = values.dimensions(), .scalars = values};
-  summariseValues(channel);
-  if (!(channel.minimum < channel.maximum)) return std::nullopt;
-  const Histogram histogram = histogramOf(channel, kBins);
-  const auto binBelow = [&](double part) {
-    double count = 0.0;
-    int bin = 0;
-    while (bin + 1 < kBins && count + double(histogram.counts[std::size_t(bin)]) < part * double(channel.activeVoxels))
-      count += double(histogram.counts[std::size_t(bin++)]);
-    return bin;
-  };
-  const int mode = int(std::ranges::max_element(histogram.counts) - histogram.counts.begin());
-  const int begin = 2 * mode - std::min(binBelow(kTail), mode) + 1, end = binBelow(1.0 - kTail) + 1;
-  if (begin >= end || binBelow(1.0 - kMostAbove) >= begin) return std::nullopt;
-  const auto valueAt = [&](int bin) { return std::lerp(channel.minimum, channel.maximum, float(bin) / float(kBins)); };
-  return std::array{valueAt(begin), valueAt(end)};
 }
 
 struct Opened {
@@ -252,6 +169,12 @@ Opened openScan(const fs::path& file, const ScanRequest& request) {
   checkRequest(file, format, request);
   Opened opened{.reader = open(file, format, request), .header = {}};
   opened.header = opened.reader->header();
+  opened.header.areColors |= opened.header.components > 1;
+  // Those of VTK are arrays, which have names.
+  if (opened.header.components > 1 && format != Format::Vti) describeColors(opened.header);
+  const bool isSingle = opened.header.channels.empty() && format != Format::Vti && format != Format::Zarr && format != Format::Tiff;
+  if (!request.array.empty() && isSingle)
+    fail(ErrorKind::Usage, "{} chooses among several, and '{}' has one grid of values", Parameter("grid"), file.string());
   space(opened.header, request.spacing);
   const int step = request.timeStep.value_or(0);
   if (step >= opened.header.timeSteps)
@@ -260,10 +183,16 @@ Opened openScan(const fs::path& file, const ScanRequest& request) {
   return opened;
 }
 
+/// The voxels that are read.
+VoxelBox partOf(const ScanHeader& header) {
+  return header.part.value_or(VoxelBox{.first = glm::ivec3(0), .last = header.dimensions - 1});
+}
+
 /// Fails before memory is taken.
 void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximumVoxels, std::size_t channels) {
-  const glm::ivec3 size = opened.header.dimensions;
-  const std::uint64_t voxels = opened.header.samples();
+  const VoxelBox part = partOf(opened.header);
+  const glm::ivec3 size = part.last - part.first + 1;
+  const std::uint64_t voxels = std::uint64_t(size.x) * std::uint64_t(size.y) * std::uint64_t(size.z);
   constexpr std::size_t kSums = 4;  // of channels: densities and colours
   const std::uint64_t boxes = channels == 0 ? 1 : channels + kSums;
   const std::uint64_t bytes = boxes * ScalarBricks::bytesOf(voxels / std::tuple_size_v<ScalarBricks::Brick>) + opened.reader->bytesToRead();
@@ -277,7 +206,65 @@ void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximum
          size.x, size.y, size.z, bytes >> 20, machineMemoryBytes() >> 20);
 }
 
+/// The scalars of the channels with these numbers; of channels that follow each other in every voxel in one pass.
+std::vector<ScalarBricks> readChannels(const Opened& opened, const ScanRequest& request, const std::vector<int>& numbers) {
+  const VoxelBox box = partOf(opened.header);
+  std::vector<ScanVoxels> voxels;
+  for (std::size_t i = 0; i < numbers.size(); ++i) voxels.emplace_back(box.last - box.first + 1, box.first);
+  ScanPart part{.timeStep = request.timeStep.value_or(0), .box = box};
+  if (opened.header.components > 1) {
+    const auto put = [&](const SampleBlock& block) {
+      for (std::size_t i = 0; i < numbers.size(); ++i) voxels[i].put(block, numbers[i]);
+    };
+    opened.reader->read(part, put, request.progress);
+  } else {
+    for (std::size_t i = 0; i < numbers.size(); ++i) {
+      part.channel = numbers[i];
+      opened.reader->read(
+          part, [&](const SampleBlock& block) { voxels[i].put(block); }, request.progress);
+    }
+  }
+  std::vector<ScalarBricks> values;
+  for (ScanVoxels& one : voxels) values.push_back(one.take());
+  return values;
+}
+
+/// The volume of what is chosen.
+Volume chosenVolume(const fs::path& file, const Opened& opened, const ScanRequest& request, ChosenChannels chosen) {
+  const ScanHeader& header = opened.header;
+  const std::string name = fileNameOf(file);
+  glm::dmat4 indexToWorld = header.indexToWorld;
+  indexToWorld[3] = indexToWorld * glm::dvec4(glm::dvec3(partOf(header).first), 1.0);
+  if (chosen.areColors) {
+    Volume volume = volumeOfColors(readChannels(opened, request, chosen.numbers), header.type, indexToWorld, name);
+    if (request.asColors) return volume;
+    return volumeOfScalars(std::move(volume.scalars), indexToWorld, request.noData, name);
+  }
+  if (chosen.numbers.empty()) {
+    const int channel = header.channels.empty() ? 0 : channelOf(file, header, request.array, Parameter("grid", request.array));
+    const std::string array = header.channels.empty() ? header.array : request.array;
+    return volumeOfScalars(std::move(readChannels(opened, request, {channel}).front()), indexToWorld, request.noData,
+                           array.empty() ? name : name + " " + array, request.labels);
+  }
+  std::vector<ScalarBricks> values = readChannels(opened, request, chosen.numbers);
+  for (std::size_t i = 0; i < values.size(); ++i)
+    if (!chosen.styles[i].window) chosen.styles[i].window = windowAboveBackground(values[i]);
+  return volumeOfChannels(std::move(values), indexToWorld, chosen.styles, name);
+}
+
 }  // namespace
+
+bool areColors(int components, SampleType type) {
+  return (components == 3 || components == 4) && (type == SampleType::U8 || type == SampleType::U16);
+}
+
+void checkComponents(const fs::path& file, int components, SampleType type) {
+  if (components == 1 || areColors(components, type)) return;
+  fail(ErrorKind::Input,
+       "'{}' has {} numbers a voxel of type {}, and scans have one, or 3 or 4 of 8 or 16 bits, which are colours: write one of them, "
+       "or their magnitude, into a file",
+       file.string(), components, nameOf(type));
+}
 
 void checkEdges(const fs::path& file, const glm::i64vec3& dimensions) {
   constexpr std::int64_t kLongestEdge = 1 << 20;
@@ -332,31 +319,12 @@ std::vector<ChannelStyle> scanChannels(const fs::path& file, const ScanRequest& 
 Volume readScan(const fs::path& file, const ScanRequest& request) {
   return guarded(file, [&] {
     Opened opened = openScan(file, request);
-    ScanHeader& header = opened.header;
-    ChosenChannels chosen = chosenChannels(file, header, request);
+    const ChosenChannels chosen = chosenChannels(file, opened.header, request);
     checkSize(file, opened, request.maximumVoxels, chosen.numbers.size());
-    const auto read = [&](int channel) {
-      ScanVoxels voxels(header.dimensions);
-      opened.reader->read(
-          {.timeStep = request.timeStep.value_or(0), .channel = channel}, [&](const SampleBlock& block) { voxels.put(block); },
-          request.progress);
-      return voxels.take();
-    };
-    const std::string name = fileNameOf(file);
-    Volume volume;
-    if (chosen.numbers.empty()) {
-      const int channel = header.channels.empty() ? 0 : channelOf(file, header, request.array, Parameter("grid", request.array));
-      const std::string array = header.channels.empty() ? header.array : request.array;
-      volume =
-          volumeOfScalars(read(channel), header.indexToWorld, request.noData, array.empty() ? name : name + " " + array, request.labels);
-    } else {
-      std::vector<ScalarBricks> values;
-      for (std::size_t i = 0; i < chosen.numbers.size(); ++i) {
-        values.push_back(read(chosen.numbers[i]));
-        if (!chosen.styles[i].window) chosen.styles[i].window = windowAboveBackground(values[i]);
-      }
-      volume = volumeOfChannels(std::move(values), header.indexToWorld, chosen.styles, name);
-    }
+    Volume volume = chosenVolume(file, opened, request, chosen);
+    const ScanHeader& header = opened.header;
+    volume.isPart = header.part.has_value();
+    if (header.part) volume.indexOrigin = header.part->first;
     volume.remarks.insert(volume.remarks.begin(), header.remarks.begin(), header.remarks.end());
     volume.up = {0.0, 0.0, 1.0};
     volume.upReason = "it is a scan";

@@ -6,6 +6,7 @@
 #include <cstdint>
 #include <filesystem>
 #include <glm/glm.hpp>
+#include <limits>
 #include <optional>
 #include <span>
 #include <string>
@@ -14,6 +15,7 @@
 
 #include "engine/core/stages.h"
 #include "engine/volume/channels.h"
+#include "engine/volume/coarse_volume.h"
 #include "engine/volume/labels.h"
 #include "engine/volume/raw_layout.h"
 #include "engine/volume/sample_type.h"
@@ -29,7 +31,12 @@ struct ScanRequest {
   std::string array;
   std::vector<ChannelStyle> channels;  ///< of a file with channels, those that are drawn together; none: those that the file shows
   std::optional<int> pyramidLevel;     ///< of a file with several resolutions, from 0, the finest; else by imageEdge and memory
+  std::uint64_t memoryBytes = std::numeric_limits<std::uint64_t>::max();  ///< that may be used, a quarter of it for such a file
   int imageEdge = 0;                   ///< pixels along the longer edge of the image; 0: unknown
+  /// Of a file with several resolutions, the voxels that are read, all others being empty: of `pyramidLevel`, else of the finest level. Of
+  /// other files all are read.
+  std::optional<VoxelBox> clipBox;
+  bool asColors = true;               ///< draws colours as such; else their luminance
   std::optional<RawLayout> raw;       ///< the file has values without a header; else the layout of its name (layoutOfName)
   std::optional<std::string> series;  ///< UID of a DICOM series; else the only one of the folder, or that of the file
   std::optional<int> timeStep;        ///< of a file with several, from 0; else the first
@@ -50,6 +57,13 @@ struct ScanChannel {
   bool operator==(const ScanChannel&) const = default;
 };
 
+/// Where the coordinates of a scan are from.
+enum class ScanSpace {
+  File,         ///< axes of the file, in a unit that it does not say
+  Millimetres,  ///< axes of the file
+  Patient       ///< LPS millimetres: x towards the patient's left, y towards the back, z towards the head
+};
+
 /// What a scan's header says.
 struct ScanHeader {
   std::string format;  ///< "NIfTI", "DICOM series of 120 slices"
@@ -57,17 +71,20 @@ struct ScanHeader {
   glm::ivec3 dimensions{0};
   int timeSteps = 1;
   SampleType type = SampleType::U8;  ///< of the values in the file
-  /// From voxels to the world: LPS millimetres, x towards the patient's left, y towards the back, z towards the head.
-  glm::dmat4 indexToWorld{1.0};
+  int components = 1;                ///< numbers of a voxel that follow each other in the file; 3 or 4 of colours
+  glm::dmat4 indexToWorld{1.0};      ///< from voxels to the world
+  ScanSpace space = ScanSpace::File;
   std::optional<glm::dvec2> rescale;  ///< slope and intercept, which the values that are read have been multiplied by and added to
   std::vector<ScanChannel> channels;  ///< of a file with several
+  bool areColors = false;             ///< whether the channels are red, green, blue and maybe opacity
   std::vector<glm::ivec3> levels;     ///< dimensions of a file with several resolutions, the finest first
   int level = 0;                      ///< which of them `dimensions` and `indexToWorld` are of
+  std::optional<VoxelBox> part;       ///< the voxels of `dimensions` that are read; none: all
   std::vector<std::string> remarks;   ///< what was chosen, as Volume::remarks
-  bool inMillimetres = false;         ///< whether the file says that lengths are; else their unit is not known
   std::string valueUnit;              ///< "HU"; empty where the file does not say it
 
   std::uint64_t samples() const { return std::uint64_t(dimensions.x) * std::uint64_t(dimensions.y) * std::uint64_t(dimensions.z); }
+  std::uint64_t bytesOfVoxel() const { return bytesOf(type) * std::uint64_t(components); }
 };
 
 /// Whether it is read as a scan: by the ending of its name, as a folder, or as DICOM by its content.
@@ -84,10 +101,10 @@ ScanHeader readScanHeader(const std::filesystem::path& file, const ScanRequest& 
 /// How the channels are drawn that readScan mixes, with the colours and windows of the file where the request gives none; none where a
 /// single channel is read.
 std::vector<ChannelStyle> scanChannels(const std::filesystem::path& file, const ScanRequest& request);
-/// Reads the samples as floats, in which all values of 8 and 16 bits are exact. Up is +z, towards the head. Fails with ErrorKind::Input for
-/// a file that is missing, damaged, shorter than its header says, of vectors or colours, or has several series of which none is chosen;
-/// with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels` or this machine's memory, before allocating it; and with ErrorKind::Usage
-/// for parts of the request that the file has no use for.
+/// Reads the samples as floats, in which all values of 8 and 16 bits are exact, or colours (colors.h). Up is +z, towards the head. Fails
+/// with ErrorKind::Input for a file that is missing, damaged, shorter than its header says, of vectors, or has several series of which none
+/// is chosen; with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels` or this machine's memory, before allocating it; and with
+/// ErrorKind::Usage for parts of the request that the file has no use for.
 Volume readScan(const std::filesystem::path& file, const ScanRequest& request);
 
 }  // namespace freevoxels

@@ -17,7 +17,9 @@ namespace freevoxels {
 
 /// Which samples of a file are read.
 struct ScanPart {
-  int timeStep = 0, channel = 0;
+  int timeStep = 0;
+  int channel = 0;                             ///< of a file whose channels do not follow each other in every voxel
+  std::optional<VoxelBox> box = std::nullopt;  ///< blocks beyond it may be left out
 };
 
 /// A scan of which the header was read and checked.
@@ -53,6 +55,10 @@ std::unique_ptr<ScanReader> openDicomScan(const std::filesystem::path& file, con
   fail(ErrorKind::Input, "cannot read '{}': {}; the file is damaged, or was cut: copy or download it again", file.string(), why);
 }
 
+/// Whether so many numbers of a voxel are colours.
+bool areColors(int components, SampleType type);
+/// Fails for several numbers of a voxel that are no colours.
+void checkComponents(const std::filesystem::path& file, int components, SampleType type);
 /// Fails for edges of a box that are not 1 to 2^20.
 void checkEdges(const std::filesystem::path& file, const glm::i64vec3& dimensions);
 /// Fails where a file of `fileBytes` cannot hold `bytes` of values, not even compressed by zlib.

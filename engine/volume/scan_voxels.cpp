@@ -26,28 +26,30 @@ float sampleAt(const std::byte* place, const SampleBlock& block) {
 
 }  // namespace
 
-ScanVoxels::ScanVoxels(glm::ivec3 dimensions)
+ScanVoxels::ScanVoxels(glm::ivec3 dimensions, glm::ivec3 first)
     : dimensions_(dimensions),
+      first_(first),
       cells_((dimensions + (kEdge - 1)) / kEdge),
       bricks_(std::size_t(cells_.x) * std::size_t(cells_.y) * std::size_t(cells_.z)) {
   tbb::parallel_for(std::size_t(0), bricks_.size(), [&](std::size_t i) { bricks_[i].fill(kInactiveVoxel); });
 }
 
-void ScanVoxels::put(const SampleBlock& block) {
-  const glm::ivec3 end = block.first + block.extent;
-  for (int axis = 0; axis < 3; ++axis) {
-    FV_CHECK_LE(0, block.first[axis]);
-    FV_CHECK_LE(end[axis], dimensions_[axis]);
-  }
+void ScanVoxels::put(const SampleBlock& block, int component) {
+  FV_CHECK_LT(component, block.components);
+  const glm::ivec3 begin = glm::max(block.first, first_), end = glm::min(block.first + block.extent, first_ + dimensions_);
   withSampleType(block.type, [&](auto typed) {
     using Value = decltype(typed);
-    tbb::parallel_for(block.first.z, end.z, [&](int z) {
-      for (int y = block.first.y; y < end.y; ++y) {
+    const std::size_t step = sizeof(Value) * std::size_t(block.components);
+    tbb::parallel_for(begin.z, std::max(begin.z, end.z), [&](int z) {
+      for (int y = begin.y; y < end.y; ++y) {
         const std::size_t row = std::size_t(y - block.first.y) + std::size_t(block.extent.y) * std::size_t(z - block.first.z);
-        const std::byte* sample = block.samples + row * std::size_t(block.extent.x) * sizeof(Value);
-        const std::size_t cellRow = std::size_t(cells_.x) * (std::size_t(y / kEdge) + std::size_t(cells_.y) * std::size_t(z / kEdge));
-        for (int x = block.first.x; x < end.x; ++x, sample += sizeof(Value))
-          bricks_[cellRow + std::size_t(x / kEdge)][ScalarBricks::indexInBrick({x % kEdge, y % kEdge, z % kEdge})] =
+        const std::size_t skipped = row * std::size_t(block.extent.x) + std::size_t(begin.x - block.first.x);
+        const std::byte* sample = block.samples + skipped * step + std::size_t(component) * sizeof(Value);
+        const glm::ivec3 there = glm::ivec3(0, y, z) - first_;
+        const std::size_t cellRow =
+            std::size_t(cells_.x) * (std::size_t(there.y / kEdge) + std::size_t(cells_.y) * std::size_t(there.z / kEdge));
+        for (int x = begin.x - first_.x; x < end.x - first_.x; ++x, sample += step)
+          bricks_[cellRow + std::size_t(x / kEdge)][ScalarBricks::indexInBrick({x % kEdge, there.y % kEdge, there.z % kEdge})] =
               sampleAt<Value>(sample, block);
       }
     });

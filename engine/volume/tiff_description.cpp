@@ -58,6 +58,20 @@ std::optional<glm::vec3> omeColor(std::string_view text) {
   return glm::vec3(linear(24), linear(16), linear(8));
 }
 
+/// A number of ImageJ's metadata, in either order of bytes.
+std::uint32_t imageJNumber(std::span<const std::byte> bytes, bool isBigEndian) {
+  std::uint32_t number = 0;
+  for (std::size_t i = 0; i < 4; ++i) number |= std::uint32_t(bytes[isBigEndian ? 3 - i : i]) << (8 * i);
+  return number;
+}
+
+/// The colour of the largest value in a table of 256 values each of red, green and blue; none for black.
+std::optional<glm::vec3> lastColor(std::span<const std::byte> table) {
+  glm::vec3 color;
+  for (std::size_t c = 0; c < 3; ++c) color[int(c)] = linearFromSrgb(float(std::uint8_t(table[256 * c + 255])) / 255.0f);
+  return color == glm::vec3(0.0f) ? std::nullopt : std::optional(color);
+}
+
 void takeOmeChannels(const pugi::xml_node& pixels, TiffDescription& description) {
   std::vector<ScanChannel> channels;
   std::set<std::string> colors;
@@ -126,12 +140,36 @@ std::optional<TiffDescription> imageJDescription(const std::filesystem::path& fi
     failDamaged(file, fmt::format("its description says {} images, and {} channels of {} slices and {} frames", images,
                                   description.channels, description.slices, description.frames));
   description.unit = millimetresOf(values["unit"]);
+  description.isInMillimetres = description.unit.has_value();
   if (const std::optional<double> spacing = distanceIn(values["spacing"]))
     description.distance[2] = *spacing * description.unit.value_or(1.0);
   return description;
 }
 
-std::optional<TiffDescription> omeDescription(const std::filesystem::path& file, const std::string& text) {
+void takeImageJColors(std::span<const std::byte> metadata, std::span<const std::uint32_t> counts, TiffDescription& description) {
+  constexpr std::uint32_t kMagic = 0x494a494a, kTables = 0x6c757473;  // IJIJ, luts
+  constexpr std::size_t kEntry = 8, kTable = 3 * 256;
+  if (counts.empty() || counts[0] < 4 || counts[0] > metadata.size()) return;
+  const bool isBigEndian = imageJNumber(metadata, true) == kMagic;
+  if (!isBigEndian && imageJNumber(metadata, false) != kMagic) return;
+  const std::span<const std::byte> header = metadata.first(counts[0]);
+  std::vector<std::optional<glm::vec3>> colors;
+  std::size_t part = 1, at = counts[0];
+  for (std::size_t entry = 4; entry + kEntry <= header.size(); entry += kEntry) {
+    const std::uint32_t type = imageJNumber(header.subspan(entry), isBigEndian);
+    for (std::uint32_t n = imageJNumber(header.subspan(entry + 4), isBigEndian); n > 0; --n, ++part) {
+      if (part >= counts.size() || counts[part] > metadata.size() - at) return;
+      if (type == kTables && counts[part] == kTable) colors.push_back(lastColor(metadata.subspan(at, kTable)));
+      at += counts[part];
+    }
+  }
+  const bool areSame = std::ranges::all_of(colors, [&](const auto& color) { return color == colors.front(); });
+  if (colors.size() != std::size_t(description.channels) || areSame) return;  // a colour that all have is that of programs which know none
+  if (description.described.empty()) description.described.resize(colors.size());
+  for (std::size_t i = 0; i < colors.size(); ++i) description.described[i].color = colors[i];
+}
+
+std::optional<TiffDescription> omeDescription(const std::filesystem::path& file, const std::string& text, int components) {
   if (text.find("<OME") == std::string::npos) return std::nullopt;
   pugi::xml_document document;
   if (!document.load_buffer(text.data(), text.size())) failDamaged(file, "its description of OME is no XML");
@@ -139,6 +177,7 @@ std::optional<TiffDescription> omeDescription(const std::filesystem::path& file,
   if (!pixels) fail(ErrorKind::Input, "the description of '{}' has no pixels: name the file that has them", file.string());
   TiffDescription description{.format = "OME-TIFF"};
   description.channels = countIn(file, attribute(pixels, "SizeC"), "SizeC");
+  if (description.channels % components == 0) description.channels /= components;
   description.slices = countIn(file, attribute(pixels, "SizeZ"), "SizeZ");
   description.frames = countIn(file, attribute(pixels, "SizeT"), "SizeT");
   checkPlanes(file, description);
@@ -151,9 +190,9 @@ std::optional<TiffDescription> omeDescription(const std::filesystem::path& file,
     const std::string name = std::string("PhysicalSize") + "XYZ"[axis];
     const std::optional<double> size = distanceIn(attribute(pixels, name.c_str()));
     const pugi::xml_attribute unit = pixels.attribute((name + "Unit").c_str());
-    const std::optional<double> millimetres = millimetresOf(unit ? unit.as_string() : "\u00b5m");
-    if (size) description.distance[axis] = *size * millimetres.value_or(1.0);
-    if (size && millimetres) description.unit = 1.0;
+    const std::optional<double> length = millimetresOf(unit ? unit.as_string() : "\u00b5m");
+    if (size) description.distance[axis] = *size * length.value_or(1.0);
+    description.isInMillimetres |= size && length;
   }
   takeOmeChannels(pixels, description);
   takeOmePages(file, pixels, description);

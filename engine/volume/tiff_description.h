@@ -2,8 +2,11 @@
 // Internal to the reader of TIFF: what the description of the first page says of all pages, as ImageJ and OME write it.
 
 #include <array>
+#include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <span>
 #include <string>
 #include <vector>
 
@@ -18,6 +21,7 @@ struct TiffDescription {
   std::vector<int> pages;                    ///< of OME, the page of each plane in that order; -1: there is none. Empty: as they follow
   std::optional<double> unit;                ///< millimetres of the unit of the resolution
   std::array<std::optional<double>, 3> distance;  ///< between voxels, in millimetres, or in a unit that is none of lengths
+  bool isInMillimetres = false;                   ///< whether it says a unit of lengths
   std::vector<ScanChannel> described;             ///< as many as channels, or none
 
   std::uint64_t planes() const { return std::uint64_t(channels) * std::uint64_t(slices) * std::uint64_t(frames); }
@@ -27,6 +31,10 @@ struct TiffDescription {
 
 /// Nothing where the text is no such description. Fails with ErrorKind::Input where it is one and is damaged.
 std::optional<TiffDescription> imageJDescription(const std::filesystem::path& file, const std::string& text);
-std::optional<TiffDescription> omeDescription(const std::filesystem::path& file, const std::string& text);
+/// Gives the channels the colours at the ends of the look-up tables that ImageJ has them in: `metadata` are the values of its tag of parts,
+/// and `counts` those of its tag of their lengths. Leaves the channels as they are where these are something else.
+void takeImageJColors(std::span<const std::byte> metadata, std::span<const std::uint32_t> counts, TiffDescription& description);
+/// `components`: numbers of a pixel, which OME counts as channels.
+std::optional<TiffDescription> omeDescription(const std::filesystem::path& file, const std::string& text, int components);
 
 }  // namespace freevoxels

@@ -21,6 +21,8 @@ namespace tiff_fs = std::filesystem;
 
 constexpr std::uint64_t kLargestPart = std::uint64_t(1) << 31;  ///< bytes that libtiff may allocate at once
 
+constexpr std::uint32_t kImageJByteCounts = 50838, kImageJMetadata = 50839;  ///< tags
+
 /// A file of which libtiff prints nothing; its first error is kept.
 class TiffFile {
  public:
@@ -46,6 +48,18 @@ class TiffFile {
     Value value = without;
     return TIFFGetFieldDefaulted(tiff_.get(), number, &value) == 1 ? value : without;
   }
+  /// The values of a tag that libtiff does not know; none where it is not there, or is of other types.
+  template <typename Value>
+  std::span<const Value> list(std::uint32_t number, std::initializer_list<TIFFDataType> types) const {
+    const TIFFField* const field = TIFFFindField(tiff_.get(), number, TIFF_ANY);
+    if (field == nullptr || TIFFFieldReadCount(field) != TIFF_VARIABLE2 || TIFFFieldPassCount(field) == 0 ||
+        std::ranges::find(types, TIFFFieldDataType(field)) == types.end())
+      return {};
+    std::uint32_t count = 0;
+    const Value* values = nullptr;
+    if (TIFFGetField(tiff_.get(), number, &count, &values) != 1 || values == nullptr) return {};
+    return {values, count};
+  }
 
  private:
   struct Close {
@@ -69,9 +83,12 @@ class TiffFile {
 struct TiffPageForm {
   glm::ivec2 size{0};
   SampleType type = SampleType::U8;
+  int components = 1;       ///< 3 or 4 of colours
+  bool isPlanar = false;    ///< whether the values of each component are behind those of another
   bool isInverted = false;  ///< whether 0 is white
 
-  std::uint64_t bytes() const { return std::uint64_t(size.x) * std::uint64_t(size.y) * bytesOf(type); }
+  std::uint64_t bytes() const { return std::uint64_t(size.x) * std::uint64_t(size.y) * bytesOfPixel(); }
+  std::uint64_t bytesOfPixel() const { return bytesOf(type) * std::uint64_t(components); }
   bool operator==(const TiffPageForm&) const = default;
 };
 
@@ -82,14 +99,25 @@ std::optional<SampleType> tiffType(int bits, int format) {
   return sampleTypeOf(fmt::format("{}{}", format == SAMPLEFORMAT_INT ? "int" : "uint", bits));
 }
 
+/// How many numbers a pixel of the current page has. Those of colours that JPEG has packed become red, green and blue.
+int componentsOf(const TiffFile& file, SampleType type) {
+  const int components = file.tag<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL, 1);
+  if (components == 1) return 1;
+  checkComponents(file.path(), components, type);
+  const auto photometric = file.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK);
+  const bool isPacked =
+      photometric == PHOTOMETRIC_YCBCR && file.tag<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) == COMPRESSION_JPEG;
+  if (isPacked) TIFFSetField(file.get(), TIFFTAG_JPEGCOLORMODE, JPEGCOLORMODE_RGB);
+  if (photometric != PHOTOMETRIC_RGB && !isPacked)
+    fail(ErrorKind::Input, "'{}' has {} numbers a pixel that are not red, green and blue: write them as RGB, or each in pages of its own",
+         file.path().string(), components);
+  return components;
+}
+
 /// The form of the current page. Fails for a page that is not of a scan.
 TiffPageForm formOf(const TiffFile& file) {
   const auto width = file.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0), height = file.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
   checkEdges(file.path(), {std::int64_t(width), std::int64_t(height), 1});
-  const int samples = file.tag<std::uint16_t>(TIFFTAG_SAMPLESPERPIXEL, 1);
-  if (samples != 1)
-    fail(ErrorKind::Input, "'{}' has {} numbers a voxel, and scans have one: write one of them, or their magnitude, into a file",
-         file.path().string(), samples);
   const int bits = file.tag<std::uint16_t>(TIFFTAG_BITSPERSAMPLE, 1),
             format = file.tag<std::uint16_t>(TIFFTAG_SAMPLEFORMAT, SAMPLEFORMAT_UINT);
   const std::optional<SampleType> type = tiffType(bits, format);
@@ -98,42 +126,67 @@ TiffPageForm formOf(const TiffFile& file) {
          "'{}' has values of {} bits of a type that no scan has: convert them to whole numbers of 8 to 64 bits or floats of "
          "32 or 64",
          file.path().string(), bits);
-  TiffPageForm form{.size = {int(width), int(height)}, .type = *type};
+  TiffPageForm form{.size = {int(width), int(height)}, .type = *type, .components = componentsOf(file, *type)};
+  form.isPlanar = form.components > 1 && file.tag<std::uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE;
   form.isInverted = file.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE &&
                     format == SAMPLEFORMAT_UINT && bits <= 16;
   return form;
 }
 
-void readTiles(const TiffFile& file, const TiffPageForm& form, std::span<std::byte> values) {
+/// Reads the tiles of a plane of the current page, all pixels of which `form` describes.
+void readTiles(const TiffFile& file, const TiffPageForm& form, int plane, std::span<std::byte> values) {
   const glm::ivec2 tile(file.tag<std::uint32_t>(TIFFTAG_TILEWIDTH, 0), file.tag<std::uint32_t>(TIFFTAG_TILELENGTH, 0));
   const tmsize_t bytes = TIFFTileSize(file.get()), row = TIFFTileRowSize(file.get());
-  const std::uint64_t value = bytesOf(form.type);
-  if (tile.x < 1 || tile.y < 1 || bytes < 1 || std::uint64_t(bytes) > kLargestPart || std::uint64_t(row) < std::uint64_t(tile.x) * value ||
+  const std::uint64_t pixel = form.bytesOfPixel();
+  if (tile.x < 1 || tile.y < 1 || bytes < 1 || std::uint64_t(bytes) > kLargestPart || std::uint64_t(row) < std::uint64_t(tile.x) * pixel ||
       std::uint64_t(bytes) / std::uint64_t(row) < std::uint64_t(tile.y))
     failDamaged(file.path(), "its tiles are too large");
   std::vector<std::byte> buffer(static_cast<std::size_t>(bytes));
   for (int y = 0; y < form.size.y; y += tile.y)
     for (int x = 0; x < form.size.x; x += tile.x) {
-      const std::uint32_t number = TIFFComputeTile(file.get(), std::uint32_t(x), std::uint32_t(y), 0, 0);
+      const std::uint32_t number = TIFFComputeTile(file.get(), std::uint32_t(x), std::uint32_t(y), 0, std::uint16_t(plane));
       if (TIFFReadEncodedTile(file.get(), number, buffer.data(), bytes) != bytes) failDamaged(file.path(), "a tile of it ends too early");
-      const std::size_t count = std::size_t(std::min(tile.x, form.size.x - x)) * value;
+      const std::size_t count = std::size_t(std::min(tile.x, form.size.x - x)) * pixel;
       for (int line = 0; line < std::min(tile.y, form.size.y - y); ++line)
         std::copy_n(buffer.begin() + std::ptrdiff_t(row) * line, count,
-                    values.begin() + std::ptrdiff_t((std::uint64_t(y + line) * std::uint64_t(form.size.x) + std::uint64_t(x)) * value));
+                    values.begin() + std::ptrdiff_t((std::uint64_t(y + line) * std::uint64_t(form.size.x) + std::uint64_t(x)) * pixel));
     }
 }
 
-void readStrips(const TiffFile& file, const TiffPageForm& form, std::span<std::byte> values) {
-  const std::uint64_t row = std::uint64_t(form.size.x) * bytesOf(form.type);
+/// The same of strips.
+void readStrips(const TiffFile& file, const TiffPageForm& form, int plane, std::span<std::byte> values) {
+  const std::uint64_t row = std::uint64_t(form.size.x) * form.bytesOfPixel();
   const auto rows = std::min<std::uint64_t>(file.tag<std::uint32_t>(TIFFTAG_ROWSPERSTRIP, 1), std::uint64_t(form.size.y));
   if (rows < 1) failDamaged(file.path(), "its strips have no rows");
-  std::uint32_t strip = 0;
-  for (std::uint64_t y = 0; y < std::uint64_t(form.size.y); y += rows, ++strip) {
+  for (std::uint64_t y = 0; y < std::uint64_t(form.size.y); y += rows) {
     const std::span<std::byte> part = values.subspan(y * row, std::min(rows, std::uint64_t(form.size.y) - y) * row);
+    const std::uint32_t strip = TIFFComputeStrip(file.get(), std::uint32_t(y), std::uint16_t(plane));
     if (TIFFReadEncodedStrip(file.get(), strip, part.data(), tmsize_t(part.size())) != tmsize_t(part.size())) {
       file.check();
       failDamaged(file.path(), "a strip of it ends too early");
     }
+  }
+}
+
+/// Reads one plane of the current page.
+void readPlaneOf(const TiffFile& file, const TiffPageForm& form, int plane, std::span<std::byte> values) {
+  if (TIFFIsTiled(file.get()) != 0)
+    readTiles(file, form, plane, values);
+  else
+    readStrips(file, form, plane, values);
+  file.check();
+}
+
+/// Reads the planes of components, which then follow each other in every pixel.
+void readPlanes(const TiffFile& file, const TiffPageForm& form, std::span<std::byte> values) {
+  TiffPageForm single = form;
+  single.components = 1;
+  std::vector<std::byte> plane(single.bytes());
+  const std::size_t value = bytesOf(form.type);
+  for (int c = 0; c < form.components; ++c) {
+    readPlaneOf(file, single, c, plane);
+    for (std::size_t from = 0, to = std::size_t(c) * value; from < plane.size(); from += value, to += form.bytesOfPixel())
+      std::copy_n(plane.begin() + std::ptrdiff_t(from), value, values.begin() + std::ptrdiff_t(to));
   }
 }
 
@@ -178,13 +231,21 @@ class TiffScan : public ScanReader {
     const std::string text = first.tag<const char*>(TIFFTAG_IMAGEDESCRIPTION, "");
     const bool isOneFile = files_.size() == 1;
     if (isOneFile)
-      if (auto described = imageJDescription(path_, text)) description_ = *described;
+      if (auto described = imageJDescription(path_, text)) {
+        description_ = *described;
+        takeImageJColors(first.list<std::byte>(kImageJMetadata, {TIFF_BYTE, TIFF_UNDEFINED}),
+                         first.list<std::uint32_t>(kImageJByteCounts, {TIFF_LONG}), description_);
+      }
     if (isOneFile)
-      if (auto described = omeDescription(path_, text)) description_ = *described;
+      if (auto described = omeDescription(path_, text, form_.components)) description_ = *described;
+    if (form_.components > 1 && description_.channels > 1)
+      fail(ErrorKind::Input, "'{}' has {} channels of colours, and one is read: write them into files of their own", path_.string(),
+           description_.channels);
     takePlace(first);
     listPages(first);
     header_.format = isOneFile ? description_.format : fmt::format("TIFF in {} files", files_.size());
     header_.type = form_.type;
+    header_.components = form_.components;
     header_.dimensions = {form_.size, isOneFile ? description_.slices : int(files_.size())};
     header_.timeSteps = description_.frames;
     if (description_.channels > 1)
@@ -205,8 +266,12 @@ class TiffScan : public ScanReader {
         if (!file) file.emplace(path_);
         isSwapped = readPlane(*file, description_.planeAt(part.channel, z, part.timeStep), values);
       }
-      SampleBlock block{
-          .samples = values.data(), .type = form_.type, .isSwapped = isSwapped, .first = {0, 0, z}, .extent = {form_.size, 1}};
+      SampleBlock block{.samples = values.data(),
+                        .type = form_.type,
+                        .components = form_.components,
+                        .isSwapped = isSwapped,
+                        .first = {0, 0, z},
+                        .extent = {form_.size, 1}};
       if (form_.isInverted) block.slope = -1.0;
       if (form_.isInverted) block.intercept = form_.type == SampleType::U8 ? 255.0 : 65535.0;
       sink(block);
@@ -234,7 +299,7 @@ class TiffScan : public ScanReader {
     constexpr std::uint64_t kBetterThanZlib = 64;  // what LZW, Zstandard and others may make smaller than that
     const bool isCompressed = file.tag<std::uint16_t>(TIFFTAG_COMPRESSION, COMPRESSION_NONE) != COMPRESSION_NONE;
     checkPayload(path_, planes * bytes / (isCompressed ? kBetterThanZlib : 1), tiff_fs::file_size(path_), isCompressed);
-    if (pages_.size() == 1 && planes > 1 && !isCompressed && description_.pages.empty()) {
+    if (pages_.size() == 1 && planes > 1 && !isCompressed && !form_.isPlanar && description_.pages.empty()) {
       takeValuesBehindFirst(file, planes * bytes);
     } else if (description_.pages.empty() && planes > pages_.size()) {
       failDamaged(path_, fmt::format("its description says {} planes, and it has {} pages", planes, pages_.size()));
@@ -254,6 +319,7 @@ class TiffScan : public ScanReader {
     constexpr double kInch = 25.4, kCentimetre = 10.0;
     const auto unit = file.tag<std::uint16_t>(TIFFTAG_RESOLUTIONUNIT, RESUNIT_INCH);
     const bool isPlain = description_.format == "TIFF";
+    bool hasUnit = description_.isInMillimetres;
     const double length = isPlain ? (unit == RESUNIT_INCH         ? kInch
                                      : unit == RESUNIT_CENTIMETER ? kCentimetre
                                                                   : 1.0)
@@ -264,20 +330,20 @@ class TiffScan : public ScanReader {
       const double resolution = file.tag<float>(std::uint32_t(tag), 0.0f);
       const bool isKnown = std::isfinite(resolution) && resolution > 0.0 && (!isPlain || unit != RESUNIT_NONE);
       distance[axis] = description_.distance[std::size_t(axis)].value_or(isKnown ? length / resolution : 1.0);
+      hasUnit |= isPlain && isKnown && unit != RESUNIT_NONE;
     }
+    if (hasUnit) header_.space = ScanSpace::Millimetres;
     distance.z = description_.distance[2].value_or(distance.x);
     for (int axis = 0; axis < 3; ++axis) header_.indexToWorld[axis][axis] = distance[axis];
-    header_.inMillimetres = isPlain ? unit == RESUNIT_CENTIMETER : description_.unit.has_value();
   }
 
   /// Reads the current page.
   void readPage(const TiffFile& file, std::span<std::byte> values) const {
     if (formOf(file) != form_) failDamaged(file.path(), "its pages differ in size or type");
-    if (TIFFIsTiled(file.get()) != 0)
-      readTiles(file, form_, values);
+    if (form_.isPlanar)
+      readPlanes(file, form_, values);
     else
-      readStrips(file, form_, values);
-    file.check();
+      readPlaneOf(file, form_, 0, values);
   }
 
   /// Whether the bytes of the values are in the other order.

@@ -4,6 +4,7 @@
 #include <glm/gtc/matrix_transform.hpp>
 
 #include "engine/core/error.h"
+#include "engine/volume/colors.h"
 
 namespace freevoxels {
 
@@ -27,6 +28,15 @@ Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& inde
   mixChannels(volume, channels, std::move(values));
   if (volume.activeVoxels == 0 && !(volume.temperature && volume.temperature->activeVoxels > 0))
     fail(ErrorKind::Input, "the channels of {} hold nothing above the beginning of their windows: give them other windows", source);
+  return volume;
+}
+
+Volume volumeOfColors(std::vector<ScalarBricks> components, SampleType type, const glm::dmat4& indexToWorld, const std::string& source) {
+  checkTransform(indexToWorld, source);
+  Volume volume{.source = source, .dimensions = components.front().dimensions(), .indexToWorld = indexToWorld};
+  normaliseWorld(volume);
+  showColors(volume, std::move(components), type);
+  if (volume.activeVoxels == 0) fail(ErrorKind::Input, "all voxels of {} are black or transparent, so that nothing is to be seen", source);
   return volume;
 }
 

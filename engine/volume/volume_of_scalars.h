@@ -8,6 +8,7 @@
 
 #include "engine/volume/channels.h"
 #include "engine/volume/labels.h"
+#include "engine/volume/sample_type.h"
 #include "engine/volume/scan.h"
 #include "engine/volume/volume.h"
 
@@ -27,5 +28,8 @@ Volume volumeOfScalars(ScalarBricks scalars, const glm::dmat4& indexToWorld, con
 /// The same of channels (channels.h), of whose boxes of equal sizes `values` has the scalars.
 Volume volumeOfChannels(std::vector<ScalarBricks> values, const glm::dmat4& indexToWorld, const std::vector<ChannelStyle>& channels,
                         const std::string& source = "the array");
+
+/// The same of colours (colors.h).
+Volume volumeOfColors(std::vector<ScalarBricks> components, SampleType type, const glm::dmat4& indexToWorld, const std::string& source);
 
 }  // namespace freevoxels

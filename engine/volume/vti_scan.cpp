@@ -14,6 +14,7 @@
 
 #include "engine/core/random_access_file.h"
 #include "engine/volume/scan_reader.h"
+#include "engine/volume/vti_bytes.h"
 
 namespace freevoxels {
 
@@ -48,103 +49,6 @@ std::vector<Number> numbersOf(const char* text) {
   return numbers;
 }
 
-/// Where bytes of the file come from, one after the other.
-class ByteStream {
- public:
-  virtual ~ByteStream() = default;
-  /// Fills all of `bytes`; false where there are not so many.
-  virtual bool read(std::span<std::byte> bytes) = 0;
-  /// Begins a part that was encoded for itself.
-  virtual void beginPart() {}
-};
-
-class FileBytes : public ByteStream {
- public:
-  FileBytes(const RandomAccessFile& file, std::uint64_t offset) : file_(file), at_(offset) {}
-  bool read(std::span<std::byte> bytes) override {
-    const std::size_t kept = std::min(bytes.size(), kept_.size());
-    std::ranges::copy(kept_.first(kept), bytes.begin());
-    kept_ = kept_.subspan(kept);
-    bytes = bytes.subspan(kept);
-    if (bytes.size() >= kAhead) return take(bytes) == bytes.size();
-    if (bytes.empty()) return true;
-    ahead_.resize(kAhead);
-    kept_ = std::span(ahead_).first(take(ahead_));
-    return !kept_.empty() && read(bytes);
-  }
-
- private:
-  static constexpr std::size_t kAhead = std::size_t(1) << 16;
-
-  std::size_t take(std::span<std::byte> bytes) {
-    const std::size_t count = file_.readAt(at_, bytes);
-    at_ += count;
-    return count;
-  }
-
-  const RandomAccessFile& file_;
-  std::uint64_t at_;
-  Bytes ahead_;                ///< read ahead
-  std::span<std::byte> kept_;  ///< of them, what was not yet asked for
-};
-
-class TextBytes : public ByteStream {
- public:
-  explicit TextBytes(std::string_view text) : text_(text) {}
-  bool read(std::span<std::byte> bytes) override {
-    while (!text_.empty() && std::strchr(" \n\r\t", text_.front())) text_.remove_prefix(1);
-    if (bytes.size() > text_.size()) return false;
-    std::memcpy(bytes.data(), text_.data(), bytes.size());
-    text_.remove_prefix(bytes.size());
-    return true;
-  }
-
- private:
-  std::string_view text_;
-};
-
-/// The bytes of base64, of which every part ends with a group of four characters of its own.
-class Base64Bytes : public ByteStream {
- public:
-  explicit Base64Bytes(std::unique_ptr<ByteStream> text) : text_(std::move(text)) {}
-  bool read(std::span<std::byte> bytes) override {
-    for (std::byte& byte : bytes) {
-      if (next_ == kGroup && !decodeMore()) return false;
-      byte = group_[next_++];
-    }
-    return true;
-  }
-  void beginPart() override { next_ = kGroup; }
-
- private:
-  static constexpr std::size_t kGroup = 3;
-
-  static int valueOf(char c) {
-    if (c >= 'A' && c <= 'Z') return c - 'A';
-    if (c >= 'a' && c <= 'z') return c - 'a' + 26;
-    if (c >= '0' && c <= '9') return c - '0' + 52;
-    return c == '+' ? 62 : c == '/' ? 63 : c == '=' ? 0 : -1;
-  }
-
-  bool decodeMore() {
-    char text[4];
-    if (!text_->read(std::as_writable_bytes(std::span(text)))) return false;
-    std::uint32_t bits = 0;
-    for (const char c : text) {
-      const int value = valueOf(c);
-      if (value < 0) return false;
-      bits = bits << 6 | std::uint32_t(value);
-    }
-    for (std::size_t i = 0; i < kGroup; ++i) group_[i] = std::byte(bits >> (16 - 8 * i));
-    next_ = 0;
-    return true;
-  }
-
-  const std::unique_ptr<ByteStream> text_;
-  std::array<std::byte, kGroup> group_{};
-  std::size_t next_ = kGroup;
-};
-
 /// A part of the image, with the array that is read.
 struct Piece {
   Box box;  ///< of samples, in the whole
@@ -174,19 +78,20 @@ class VtiScan : public ScanReader {
     for (const Piece& piece : pieces_) {
       if (progress) progress("reading the scan", 0.0);
       const std::string_view format = piece.array.attribute("format").as_string();
-      const std::uint64_t size =
-          std::uint64_t(piece.box.extent.x) * std::uint64_t(piece.box.extent.y) * std::uint64_t(piece.box.extent.z) * bytesOf(header_.type);
+      const std::uint64_t size = std::uint64_t(piece.box.extent.x) * std::uint64_t(piece.box.extent.y) * std::uint64_t(piece.box.extent.z) *
+                                 header_.bytesOfVoxel();
       const bool isText = format == "ascii";
       const Bytes values = isText ? textValues(piece, size) : binaryValues(piece, size);
       sink({.samples = values.data(),
             .type = header_.type,
+            .components = header_.components,
             .isSwapped = !isText && isSwapped_,
             .first = piece.box.first,
             .extent = piece.box.extent});
     }
   }
 
-  std::uint64_t bytesToRead() const override { return header_.samples() * bytesOf(header_.type); }
+  std::uint64_t bytesToRead() const override { return header_.samples() * header_.bytesOfVoxel(); }
 
  private:
   /// Parses the XML; of appended values, which need be none, what is in front of them.
@@ -239,17 +144,25 @@ class VtiScan : public ScanReader {
     header_.indexToWorld[3] = {origin[0], origin[1], origin[2], 1.0};
   }
 
-  static bool isSingle(const pugi::xml_node& array) { return array.attribute("NumberOfComponents").as_int(1) == 1; }
+  static int componentsOf(const pugi::xml_node& array) { return array.attribute("NumberOfComponents").as_int(1); }
 
-  /// The array of the name, the scalars, or the only one of single numbers; of points, or of cells.
+  static bool hasColors(const pugi::xml_node& array) {
+    const auto type = std::ranges::find(kTypes, std::string_view(array.attribute("type").as_string()), &ArrayType::name);
+    return type != kTypes.end() && areColors(componentsOf(array), type->type);
+  }
+
+  /// The array of the name, the scalars, the only one of single numbers, or else of colours; of points, or of cells.
   pugi::xml_node arrayOf(const pugi::xml_node& data, const std::string& wanted) const {
     const std::string name = !wanted.empty() ? wanted : data.attribute("Scalars").as_string();
     if (const pugi::xml_node found = data.find_child_by_attribute("DataArray", "Name", name.c_str()); found && !name.empty()) return found;
     if (!wanted.empty()) return {};
-    std::vector<pugi::xml_node> single;
-    for (const pugi::xml_node& array : data.children("DataArray"))
-      if (isSingle(array)) single.push_back(array);
-    return single.size() == 1 ? single.front() : pugi::xml_node();
+    std::vector<pugi::xml_node> single, colors;
+    for (const pugi::xml_node& array : data.children("DataArray")) {
+      if (componentsOf(array) == 1) single.push_back(array);
+      if (hasColors(array)) colors.push_back(array);
+    }
+    const std::vector<pugi::xml_node>& usable = single.empty() ? colors : single;
+    return usable.size() == 1 ? usable.front() : pugi::xml_node();
   }
 
   std::string namesOf(const pugi::xml_node& piece) const {
@@ -291,18 +204,21 @@ class VtiScan : public ScanReader {
     const auto known = std::ranges::find(kTypes, type, &ArrayType::name);
     if (known == kTypes.end()) failDamaged(path_, fmt::format("its array '{}' has the type '{}'", header_.array, type));
     header_.type = known->type;
+    header_.components = componentsOf(first);
     for (const Piece& piece : pieces_) {
       if (piece.array.attribute("type").as_string() != type) failDamaged(path_, "its pieces have different types");
-      if (!isSingle(piece.array))
-        fail(ErrorKind::Input, "array '{}' of '{}' has {} numbers a voxel, and scans have one: choose another with {}: {}", header_.array,
-             path_.string(), piece.array.attribute("NumberOfComponents").as_int(), Parameter("grid", "NAME"),
-             namesOf(piece.array.parent().parent()));
+      if (componentsOf(piece.array) != 1 && !hasColors(piece.array))
+        fail(ErrorKind::Input,
+             "array '{}' of '{}' has {} numbers a voxel, and scans have one, or 3 or 4 of 8 or 16 bits, which are colours: choose "
+             "another with {}: {}",
+             header_.array, path_.string(), componentsOf(piece.array), Parameter("grid", "NAME"), namesOf(piece.array.parent().parent()));
+      if (componentsOf(piece.array) != header_.components) failDamaged(path_, "its pieces have different numbers of components");
       checkEdges(path_, piece.box.extent);
       if (glm::any(glm::lessThan(piece.box.first, glm::ivec3(0))) ||
           glm::any(glm::greaterThan(piece.box.first + piece.box.extent, whole_.extent)))
         failDamaged(path_, "a piece is not in its extent");
     }
-    checkPayload(path_, header_.samples() * (pieces_.size() == 1 ? bytesOf(header_.type) : 0), file_.bytes(),
+    checkPayload(path_, header_.samples() * (pieces_.size() == 1 ? header_.bytesOfVoxel() : 0), file_.bytes(),
                  isCompressed_ || first.attribute("format").as_string() == std::string_view("ascii"));
   }
 

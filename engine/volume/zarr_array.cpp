@@ -69,11 +69,12 @@ std::vector<ZarrArray::Piece> ZarrArray::piecesOf(const ZarrBox& box, glm::ivec3
   const std::vector<std::uint64_t> index = file && layout_.isSharded ? indexOf(name, *file) : std::vector<std::uint64_t>();
   const glm::ivec3 perShard = alongBox(box, layout_.shard) / alongBox(box, layout_.chunk);
   const glm::ivec3 all = (alongBox(box, layout_.shape) - 1) / alongBox(box, layout_.chunk) + 1;
-  const glm::ivec3 first = shard * perShard, end = glm::min(first + perShard, all);
+  const glm::ivec3 first = shard * perShard, size = alongBox(box, layout_.chunk);
+  const glm::ivec3 begin = glm::max(first, box.first / size), end = glm::min(glm::min(first + perShard, all), box.last / size + 1);
   std::vector<Piece> pieces;
-  for (glm::ivec3 chunk = first; chunk.z < end.z; ++chunk.z)
-    for (chunk.y = first.y; chunk.y < end.y; ++chunk.y)
-      for (chunk.x = first.x; chunk.x < end.x; ++chunk.x) {
+  for (glm::ivec3 chunk = begin; chunk.z < end.z; ++chunk.z)
+    for (chunk.y = begin.y; chunk.y < end.y; ++chunk.y)
+      for (chunk.x = begin.x; chunk.x < end.x; ++chunk.x) {
         Piece piece{.chunk = chunk, .file = file, .name = name, .bytes = file ? file->bytes() : 0};
         if (!index.empty()) {
           std::uint64_t at = 0;
@@ -147,7 +148,8 @@ std::uint64_t ZarrArray::bytesToRead() const {
 }
 
 void ZarrArray::read(const ZarrBox& box, const SampleSink& sink, const Progress& progress) const {
-  const glm::ivec3 shards = (alongBox(box, layout_.shape) - 1) / alongBox(box, layout_.shard) + 1;
+  const glm::ivec3 size = alongBox(box, layout_.shard), first = box.first / size;
+  const glm::ivec3 last = glm::min(alongBox(box, layout_.shape) - 1, box.last) / size, shards = last - first + 1;
   const double all = double(shards.x) * double(shards.y) * double(shards.z);
   double done = 0.0;
   std::vector<Piece> pieces;
@@ -159,9 +161,9 @@ void ZarrArray::read(const ZarrBox& box, const SampleSink& sink, const Progress&
     }
     pieces.clear();
   };
-  for (glm::ivec3 shard(0); shard.z < shards.z; ++shard.z)
-    for (shard.y = 0; shard.y < shards.y; ++shard.y)
-      for (shard.x = 0; shard.x < shards.x; ++shard.x, ++done) {
+  for (glm::ivec3 shard = first; shard.z <= last.z; ++shard.z)
+    for (shard.y = first.y; shard.y <= last.y; ++shard.y)
+      for (shard.x = first.x; shard.x <= last.x; ++shard.x, ++done) {
         std::vector<Piece> more = piecesOf(box, shard);
         std::ranges::move(more, std::back_inserter(pieces));
         if (pieces.size() >= piecesAtOnce()) readThem();

@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstdint>
+#include <limits>
 #include <memory>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -16,10 +17,12 @@
 
 namespace freevoxels {
 
-/// Which voxels of an array are read: all along three of its axes, at one place of the others.
+/// Which voxels of an array are read: a range along three of its axes, at one place of the others.
 struct ZarrBox {
   std::array<int, 3> axes{-1, -1, -1};  ///< axes of the array that are x, y and z; -1: none, of which the box has the extent 1
   std::vector<std::uint64_t> place;     ///< along each axis of the array; those of x, y and z are not used
+  /// Along x, y and z, inclusive; `last` may be beyond the array.
+  glm::ivec3 first{0}, last{std::numeric_limits<int>::max() - 1};
 };
 
 /// The description of an array.
@@ -48,7 +51,8 @@ class ZarrArray {
   ZarrArray(const FileStore& store, std::string folder) : store_(store), folder_(std::move(folder)), layout_(zarrLayout(store, folder_)) {}
 
   const ZarrLayout& layout() const { return layout_; }
-  /// Hands out blocks by several threads. Fails with ErrorKind::Input for chunks that are damaged, by their names.
+  /// Hands out the chunks that have voxels of the box by several threads. Fails with ErrorKind::Input for chunks that are damaged, by their
+  /// names.
   void read(const ZarrBox& box, const SampleSink& sink, const Progress& progress) const;
   /// Host memory of reading.
   std::uint64_t bytesToRead() const;

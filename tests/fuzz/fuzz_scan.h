@@ -12,7 +12,8 @@ inline void readScanOf(ScanReader& reader) {
   if (header.samples() > kMostVoxels || reader.bytesToRead() > kMostBytes) return;
   ScanVoxels voxels(header.dimensions);
   const int channels = std::max(int(header.channels.size()), 1);
-  reader.read({.timeStep = header.timeSteps - 1, .channel = channels - 1}, [&](const SampleBlock& block) { voxels.put(block); }, {});
+  reader.read({.timeStep = header.timeSteps - 1, .channel = channels - 1},
+              [&](const SampleBlock& block) { voxels.put(block, block.components - 1); }, {});
 }
 
 }  // namespace freevoxels::fuzz

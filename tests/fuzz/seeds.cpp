@@ -219,6 +219,12 @@ void writeStacks(const fs::path& tiff, const fs::path& text) {
                                        "<Channel Name=\"a\" Color=\"65535\"/><Channel Name=\"b\"/><TiffData IFD=\"0\" PlaneCount=\"6\"/>");
   writeFile(tiff / "hyperstack.tif", test::TiffFixture{.pages = 12, .description = kHyperstack}.bytes());
   writeFile(tiff / "behind.tif", test::TiffFixture{.description = kHyperstack, .images = 12}.bytes());
+  test::TiffFixture colored{.pages = 12, .description = kHyperstack};
+  colored.metadata = test::ImageJMetadata({{255, 0, 0}, {0, 255, 0}});
+  writeFile(tiff / "tables.tif", colored.bytes());
+  for (const bool isPlanar : {false, true})
+    writeFile(tiff / (isPlanar ? "planes.tif" : "photographs.tif"),
+              test::TiffFixture{.pages = 2, .samples = 3, .photometric = 2, .hasBytes = true, .isPlanar = isPlanar}.bytes());
   writeFile(tiff / "ome.tif", test::TiffFixture{.pages = 6, .description = ome}.bytes());
   writeFile(text / "imagej", kHyperstack);
   writeFile(text / "ome", ome);
@@ -234,6 +240,11 @@ void writeVtiImages(const fs::path& folder) {
       "<DataArray type=\"UInt16\" Name=\"a\" ";
   const std::string foot = "</DataArray></PointData></Piece></ImageData>";
   writeFile(folder / "text.vti", head + image + "format=\"ascii\">1 2 3 4 5 6 7 8 9 10 11 12" + foot + "</VTKFile>");
+  std::string colors = image;
+  colors.replace(colors.find("UInt16"), 6, "UInt8\" NumberOfComponents=\"3");
+  std::string numbers;
+  for (int i = 0; i < 36; ++i) numbers += std::to_string(7 * i) + " ";
+  writeFile(folder / "colors.vti", head + colors + "format=\"ascii\">" + numbers + foot + "</VTKFile>");
   std::string values("\x18\0\0\0", 4);
   for (char i = 0; i < 24; ++i) values += i;
   const std::string appended = "format=\"appended\" offset=\"0\">" + foot + "<AppendedData encoding=\"raw\">_";

@@ -13,7 +13,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
       std::abort();
   };
   fuzz::tryTo([&] { planesOf(imageJDescription("a.tif", text)); });
-  fuzz::tryTo([&] { planesOf(omeDescription("a.tif", text)); });
+  fuzz::tryTo([&] { planesOf(omeDescription("a.tif", text, 1)); });
   fuzz::tryTo([&] { layoutOfName(text); });
   fuzz::tryTo([&] {
     const RawLayout layout = readRawLayout("raw", text);

@@ -2,6 +2,7 @@
 
 #include <glm/gtc/packing.hpp>
 
+#include "engine/image/srgb.h"
 #include "engine/volume/chunk_codecs.h"
 #include "engine/volume/scan_file.h"
 #include "tests/refusal.h"
@@ -210,6 +211,78 @@ TEST(NgffScan, ChannelsHaveTheirColoursAndWindows) {
   expectZarrRefusal(file, ErrorKind::Input, {"0 'DAPI', 1 'GFP'", "Cy5"}, {.channels = {{.name = "Cy5"}}});
   const Labels labels;
   expectZarrRefusal(file, ErrorKind::Usage, {"labels", "grid"}, {.labels = &labels});
+}
+
+TEST(NgffScan, AClipBoxReadsItsChunksAlone) {
+  const TemporaryFolder folder;
+  const ZarrFixture array;  // with chunks of 2 x 4 x 5 voxels along z, y and x
+  const auto expectPart = [&](const std::string& name, ZarrFiles files, const std::string& needed, const VoxelBox& box) {
+    SCOPED_TRACE(name);
+    for (auto& [chunk, bytes] : files)
+      if (chunk.starts_with("0/") && chunk.find("zar") == std::string::npos && chunk != needed) bytes = "damaged";
+    const auto file = writeZarr(folder / name, files);
+    const Volume part = readZarr(file, {.array = "1", .clipBox = box});
+    const glm::ivec3 size = glm::min(box.last, glm::ivec3(10, 6, 4)) - box.first + 1;
+    ASSERT_EQ(part.dimensions, size);
+    EXPECT_TRUE(part.isPart);
+    EXPECT_EQ(part.indexOrigin, box.first);
+    EXPECT_NEAR(part.indexToWorld[3][0], 30e-3 + box.first.x * 0.25e-3, 1e-12);
+    for (int z = 0; z < size.z; ++z)
+      for (int y = 0; y < size.y; ++y)
+        for (int x = 0; x < size.x; ++x)
+          EXPECT_EQ(part.scalar(x, y, z), float(array.valueAt({1, box.first.z + z, box.first.y + y, box.first.x + x})));
+  };
+  expectPart("chunks.zarr", secondOf(array), "0/1/0/1/1", {{6, 5, 0}, {8, 99, 1}});
+  expectPart("shards.zarr", thirdOf(array, codecsOf({}), {1, 2, 1, 2}), "0/c/1/0/1/0", {{6, 5, 1}, {8, 6, 3}});
+  expectZarrRefusal(folder / "chunks.zarr", ErrorKind::Usage, {"clip-box", "11 x 7 x 5"},
+                    {.array = "1", .clipBox = VoxelBox{{11, 0, 0}, {20, 9, 9}}});
+}
+
+TEST(NgffScan, ASmallClipBoxShowsAFinerLevel) {
+  const TemporaryFolder folder;
+  ZarrFiles files;
+  ZarrFixture{.shape = {2, 8, 64, 64}, .chunk = {1, 8, 16, 16}}.addSecond(files, "0");
+  ZarrFixture{.shape = {2, 8, 32, 32}, .chunk = {1, 8, 16, 16}}.addSecond(files, "1");
+  ZarrFixture{.shape = {2, 8, 16, 16}, .chunk = {1, 8, 16, 16}}.addSecond(files, "2");
+  addImage(files, {{"multiscales", multiscalesOf(3)}});
+  const auto file = writeZarr(folder / "a.zarr", files);
+  const auto headerOf = [&](ScanRequest request) {
+    request.array = "0";
+    request.maximumVoxels = 1 << 30;
+    return readScanHeader(file, request);
+  };
+  const VoxelBox box{{20, 21, 2}, {31, 40, 5}};
+  EXPECT_EQ(headerOf({.imageEdge = 14}).level, 2);
+  EXPECT_EQ(headerOf({.imageEdge = 14, .clipBox = box}).level, 0);
+  EXPECT_EQ(headerOf({.imageEdge = 14, .clipBox = box}).part, box);
+  EXPECT_EQ(headerOf({.imageEdge = 8, .clipBox = box}).level, 1);
+  EXPECT_EQ(headerOf({.imageEdge = 8, .clipBox = box}).part, (VoxelBox{{10, 10, 2}, {15, 20, 5}})) << "the box counts voxels of level 0";
+  EXPECT_EQ(headerOf({.pyramidLevel = 1, .clipBox = box}).part, (VoxelBox{{20, 21, 2}, {31, 31, 5}})) << "unless a level is given";
+  EXPECT_EQ(headerOf({.memoryBytes = 4 * 6 * 4 * 8 * 32 * 32}).level, 1);
+  EXPECT_EQ(headerOf({.memoryBytes = 1}).level, 2);
+}
+
+TEST(NgffScan, ChannelsThatAreRedGreenAndBlueAreColours) {
+  const TemporaryFolder folder;
+  ZarrFixture array{.valueAt = [](ZarrPlace v) { return (1 + v[3] + 11 * v[2] + 77 * v[1] + 50 * v[0]) % 256; },
+                    .append = [](std::string& bytes, int value) { bytes += char(value); }};
+  const auto fileOf = [&](const std::string& name, const json& channels) {
+    ZarrFiles files = secondOf(array, {{"dtype", "|u1"}});
+    addImage(files, {{"multiscales", multiscalesOf(1)}, {"omero", {{"channels", channels}}}});
+    return writeZarr(folder / name, files);
+  };
+  const json whole{omeroChannel("0", "FF0000", true, 0, 255), omeroChannel("1", "00FF00", true, 0, 255),
+                   omeroChannel("2", "0000FF", true, 0, 255)};
+  for (const auto& file : {fileOf("a.zarr", whole), fileOf("b.zarr", {{{"label", "Red"}}, {{"label", "Green"}}, {{"label", "Blue"}}})}) {
+    const Volume volume = readZarr(file, {});
+    ASSERT_TRUE(volume.albedo);
+    EXPECT_EQ(volume.albedo->name, "colors");
+    EXPECT_EQ(volume.albedo->values[2].at({3, 2, 1}), linearFromSrgb(float(array.valueAt({2, 1, 2, 3})) / 255.0f));
+    EXPECT_EQ(readZarr(file, {.channels = {{.name = "0", .window = std::array{0.0f, 100.0f}}}}).albedo->name, kChannelsName);
+  }
+  json dyes = whole;
+  dyes[1] = omeroChannel("GFP", "00FF00", true, 20, 180);
+  EXPECT_EQ(readZarr(fileOf("c.zarr", dyes), {}).albedo->name, kChannelsName);
 }
 
 TEST(NgffScan, ChunksThatAreNotThereAreTheFillValue) {

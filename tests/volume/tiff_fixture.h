@@ -5,11 +5,34 @@
 #include <cstdint>
 #include <cstring>
 #include <glm/glm.hpp>
+#include <optional>
 #include <string>
+#include <vector>
 
 namespace freevoxels::test {
 
-/// Pages of 16 bits, 4 x 3 pixels each, whose values are 100 times their number and that of the pixel.
+/// The metadata of ImageJ with a look-up table for each colour, from black to it, after a part of another kind; and the lengths of its
+/// parts.
+struct ImageJMetadata {
+  std::string bytes;
+  std::vector<std::uint32_t> counts;
+
+  explicit ImageJMetadata(const std::vector<std::array<int, 3>>& colors, bool isBigEndian = false) {
+    const auto append = [&](std::uint32_t value) {
+      for (int i = 0; i < 4; ++i) bytes += char(value >> (isBigEndian ? 24 - 8 * i : 8 * i));
+    };
+    for (const std::uint32_t value : {0x494a494au, 0x696e666fu, 1u, 0x6c757473u, std::uint32_t(colors.size())}) append(value);
+    bytes += "notes ";
+    counts = {20, 6};
+    for (const std::array<int, 3>& color : colors) {
+      for (const int last : color)
+        for (int i = 0; i < 256; ++i) bytes += char(i * last / 255);
+      counts.push_back(768);
+    }
+  }
+};
+
+/// Pages of 16 bits, or 8, 4 x 3 pixels each, whose values are 100 times their number and that of the pixel.
 struct TiffFixture {
   int pages = 1;
   std::string description;
@@ -20,12 +43,17 @@ struct TiffFixture {
   std::uint16_t photometric = 1;
   int firstPage = 0;
   glm::ivec2 size{4, 3};
+  bool hasBytes = false;                                  ///< whether values have 8 bits
+  bool isPlanar = false;                                  ///< whether `samples` are in strips of their own
+  std::optional<ImageJMetadata> metadata = std::nullopt;  ///< of the first page
 
   std::string valuesOf(int page) const {
     std::string values;
-    for (int i = 0; i < size.x * size.y * samples; ++i) {
-      const auto value = std::uint16_t(100 * (firstPage + page) + i);
-      values.append(reinterpret_cast<const char*>(&value), 2);
+    const int pixels = size.x * size.y;
+    for (int i = 0; i < pixels * samples; ++i) {
+      const int number = isPlanar ? i % pixels * samples + i / pixels : i;
+      const auto value = std::uint16_t(100 * (firstPage + page) + number);
+      values.append(reinterpret_cast<const char*>(&value), hasBytes ? 1 : 2);
     }
     return values;
   }
@@ -42,6 +70,18 @@ struct TiffFixture {
       append(resolution[1]);
       const auto text = std::uint32_t(file.size());
       file += description + std::string(1 + (description.size() + 1) % 2, '\0');
+      const bool hasMetadata = page == 0 && metadata;
+      const auto parts = std::uint32_t(file.size());
+      if (hasMetadata) file += metadata->bytes;
+      const auto counts = std::uint32_t(file.size());
+      if (hasMetadata)
+        for (const std::uint32_t count : metadata->counts) append(count);
+      // Where the strips are, and how long they are, where there are several.
+      const auto stripBytes = std::uint32_t((hasBytes ? 1 : 2) * size.x * size.y), strips = isPlanar ? std::uint32_t(samples) : 1u;
+      const auto places = std::uint32_t(file.size());
+      for (std::uint32_t i = 0; i < strips; ++i) append(values + i * stripBytes);
+      const auto lengths = std::uint32_t(file.size());
+      for (std::uint32_t i = 0; i < strips; ++i) append(stripBytes);
       const auto here = std::uint32_t(file.size());
       std::memcpy(file.data() + link, &here, sizeof(here));
       const auto entry = [&](std::uint16_t tag, std::uint16_t type, std::uint32_t count, std::uint32_t value) {
@@ -50,22 +90,27 @@ struct TiffFixture {
         append(count);
         append(value);
       };
-      constexpr std::uint16_t kText = 2, kShort = 3, kLong = 4, kFraction = 5;
+      constexpr std::uint16_t kByte = 1, kText = 2, kShort = 3, kLong = 4, kFraction = 5;
       const bool isDescribed = page == 0 && !description.empty();
-      append(std::uint16_t(isDescribed ? 13 : 12));
+      append(std::uint16_t(13 + (isDescribed ? 1 : 0) + (hasMetadata ? 2 : 0)));
       entry(256, kLong, 1, std::uint32_t(size.x));
       entry(257, kLong, 1, std::uint32_t(size.y));
-      entry(258, kShort, 1, 16);
+      entry(258, kShort, 1, hasBytes ? 8 : 16);
       entry(259, kShort, 1, 1);
       entry(262, kShort, 1, photometric);
       if (isDescribed) entry(270, kText, std::uint32_t(description.size() + 1), text);
-      entry(273, kLong, 1, values);
+      entry(273, kLong, strips, isPlanar ? places : values);
       entry(277, kShort, 1, samples);
       entry(278, kLong, 1, std::uint32_t(size.y));
-      entry(279, kLong, 1, std::uint32_t(2 * size.x * size.y * samples));
+      entry(279, kLong, strips, isPlanar ? lengths : samples * stripBytes);
       entry(282, kFraction, 1, fraction);
       entry(283, kFraction, 1, fraction);
+      entry(284, kShort, 1, isPlanar ? 2 : 1);
       entry(296, kShort, 1, unit);
+      if (hasMetadata) {
+        entry(50838, kLong, std::uint32_t(metadata->counts.size()), counts);
+        entry(50839, kByte, std::uint32_t(metadata->bytes.size()), parts);
+      }
       link = file.size();
       append(std::uint32_t(0));
     }

@@ -1,5 +1,6 @@
 // Stacks of TIFF with channels and time.
 
+#include "engine/image/srgb.h"
 #include "engine/volume/scan_file.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
@@ -120,6 +121,65 @@ TEST(TiffScan, WhereWhiteIsZeroValuesAreTurnedRound) {
   EXPECT_EQ(readTiff(folder / "a.tif").scalar(1, 0, 0), 65534.0f);
 }
 
+TEST(TiffScan, PhotographsAreColoursHoweverTheirPlanesLie) {
+  const TemporaryFolder folder;
+  for (const bool isPlanar : {false, true})
+    for (const std::uint16_t samples : {std::uint16_t(3), std::uint16_t(4)}) {
+      writeBytes(folder / "a.tif",
+                 TiffFixture{.pages = 2, .samples = samples, .photometric = 2, .hasBytes = true, .isPlanar = isPlanar}.bytes());
+      const Volume volume = readTiff(folder / "a.tif");
+      ASSERT_TRUE(volume.albedo);
+      const int first = 100 + samples * (2 + 4 * 1);  // of pixel (2, 1) of page 1
+      glm::vec3 color;
+      for (int c = 0; c < 3; ++c) color[c] = linearFromSrgb(float(first + c) / 255.0f);
+      for (int c = 0; c < 3; ++c) EXPECT_EQ(volume.albedo->values[std::size_t(c)].at({2, 1, 1}), color[c]);
+      const float luminance = srgbFromLinear(glm::dot(color, glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+      EXPECT_NEAR(volume.scalar(2, 1, 1), samples == 3 ? luminance : float(first + 3) / 255.0f, 1e-5f);
+      EXPECT_EQ(readTiff(folder / "a.tif", {.array = "green"}).scalar(2, 1, 1), float(first + 1));
+      EXPECT_EQ(readScanHeader(folder / "a.tif", {}).channels.size(), samples);
+    }
+  writeBytes(folder / "b.tif", TiffFixture{.pages = 2, .samples = 3, .photometric = 2, .size = {40, 30}}.bytes());
+  EXPECT_NEAR(readTiff(folder / "b.tif").albedo->values[1].at({2, 1, 1}), (100.0f + 3.0f * 42.0f + 1.0f) / 65535.0f, 1e-7f)
+      << "those of 16 bits are linear";
+}
+
+TEST(TiffScan, ColoursOfOneFileAreOneChannelOfOme) {
+  const TemporaryFolder folder;
+  const std::string xml = omeXml("SizeZ=\"2\" SizeC=\"3\" SizeT=\"1\" DimensionOrder=\"XYCZT\"",
+                                 "<Channel ID=\"Channel:0:0\" SamplesPerPixel=\"3\"/><TiffData/>");
+  writeBytes(folder / "a.ome.tif", TiffFixture{.pages = 2, .description = xml, .samples = 3, .photometric = 2, .hasBytes = true}.bytes());
+  EXPECT_EQ(readTiff(folder / "a.ome.tif").dimensions, glm::ivec3(4, 3, 2));
+  EXPECT_TRUE(readScanHeader(folder / "a.ome.tif", {}).areColors);
+}
+
+TEST(TiffScan, LookUpTablesOfImageJAreTheColoursOfChannels) {
+  const TemporaryFolder folder;
+  TiffFixture stack{.pages = 12, .description = kImageJ};
+  for (const bool isBigEndian : {false, true}) {
+    stack.metadata = ImageJMetadata({{255, 0, 0}, {0, 255, 255}}, isBigEndian);
+    writeBytes(folder / "a.tif", stack.bytes());
+    const ScanHeader header = readScanHeader(folder / "a.tif", {});
+    ASSERT_EQ(header.channels.size(), 2u);
+    EXPECT_EQ(header.channels[0].color, glm::vec3(1.0f, 0.0f, 0.0f));
+    EXPECT_EQ(header.channels[1].color, glm::vec3(0.0f, 1.0f, 1.0f));
+  }
+  const auto expectNone = [&](const ImageJMetadata& metadata) {
+    stack.metadata = metadata;
+    writeBytes(folder / "a.tif", stack.bytes());
+    EXPECT_FALSE(readScanHeader(folder / "a.tif", {}).channels[0].color);
+  };
+  expectNone(ImageJMetadata({{255, 255, 255}, {255, 255, 255}}));
+  expectNone(ImageJMetadata({{255, 0, 0}}));
+  ImageJMetadata damaged({{255, 0, 0}, {0, 255, 255}});
+  damaged.counts[3] = 1u << 31;
+  expectNone(damaged);
+  damaged.counts = {5000};
+  expectNone(damaged);
+  damaged.counts = {20, 6};
+  damaged.bytes.replace(8, 4, "\xff\xff\xff\xff");
+  expectNone(damaged);
+}
+
 TEST(TiffScan, WrongDescriptionsAndPagesAreRefused) {
   const TemporaryFolder folder;
   const auto expect = [&](const TiffFixture& stack, std::initializer_list<std::string> parts) {
@@ -136,7 +196,9 @@ TEST(TiffScan, WrongDescriptionsAndPagesAreRefused) {
   const std::string ofTwo =
       "<TiffData IFD=\"0\"><UUID FileName=\"a.tif\"/></TiffData><TiffData FirstZ=\"1\" IFD=\"0\"><UUID FileName=\"b.tif\"/></TiffData>";
   expect({.pages = 2, .description = omeXml("SizeZ=\"2\" SizeC=\"1\" SizeT=\"1\" DimensionOrder=\"XYZCT\"", ofTwo)}, {"2 files"});
-  expect({.pages = 2, .samples = 3}, {"3 numbers a voxel"});
+  expect({.pages = 2, .samples = 2}, {"2 numbers a voxel", "colours"});
+  expect({.pages = 2, .samples = 3}, {"3 numbers a pixel", "RGB"});
+  expect({.pages = 2, .description = "ImageJ=1\nimages=2\nchannels=2\n", .samples = 3, .photometric = 2}, {"2 channels of colours"});
 }
 
 }  // namespace freevoxels::test

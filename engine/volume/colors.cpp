@@ -1,0 +1,56 @@
+#include "engine/volume/colors.h"
+
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "engine/core/error.h"
+#include "engine/image/srgb.h"
+
+namespace freevoxels {
+
+namespace {
+
+constexpr std::size_t kOpacity = 3;
+const glm::vec3 kSrgbLuminance(0.2126f, 0.7152f, 0.0722f);  // of Rec.709
+
+/// Whether all voxels have the same value.
+bool isUniform(const ScalarBricks& values) {
+  const float first = values.bricks().front()[ScalarBricks::indexInBrick(glm::ivec3(0))];
+  return std::ranges::all_of(values.bricks(), [&](const ScalarBricks::Brick& brick) {
+    return std::ranges::all_of(brick, [&](float value) { return value == first || value == kInactiveVoxel; });
+  });
+}
+
+}  // namespace
+
+void showColors(Volume& volume, std::vector<ScalarBricks> components, SampleType type) {
+  FV_CHECK_LE(kOpacity, components.size());
+  const bool isSrgb = type == SampleType::U8, hasOpacity = components.size() > kOpacity && !isUniform(components[kOpacity]);
+  const float largest = isSrgb ? 255.0f : 65535.0f;
+  ScalarBricks densities = hasOpacity ? std::move(components[kOpacity]) : components[0];
+  AlbedoGrid colors{.name = kColorsName, .values = {}};
+  for (std::size_t c = 0; c < colors.values.size(); ++c) colors.values[c] = std::move(components[c]);
+  tbb::parallel_for(std::size_t(0), densities.bricks().size(), [&](std::size_t brick) {
+    for (std::size_t voxel = 0; voxel < densities.bricks()[brick].size(); ++voxel) {
+      float& density = densities.bricks()[brick][voxel];
+      if (density == kInactiveVoxel) continue;
+      glm::vec3 color;
+      for (int c = 0; c < 3; ++c) {
+        float& value = colors.values[std::size_t(c)].bricks()[brick][voxel];
+        value = isSrgb ? linearFromSrgb(value / largest) : value / largest;
+        color[c] = value;
+      }
+      density = hasOpacity ? density / largest : srgbFromLinear(std::min(glm::dot(color, kSrgbLuminance), 1.0f));
+      if (density <= 0.0f) density = kInactiveVoxel;
+    }
+  });
+  volume.scalars = std::move(densities);
+  volume.albedo = std::move(colors);
+  volume.isFog = true;
+  summariseValues(volume);
+}
+
+}  // namespace freevoxels
