@@ -34,8 +34,12 @@ std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, cons
   ScanRequest request = description.input.scanRequest(kMaxNumberedVoxels);
   request.channels = description.classification.channels;
   const std::vector<ChannelStyle> channels = isScan ? scanChannels(description.input.volume, request) : request.channels;
+  if (channels.empty())
+    fail(ErrorKind::Usage, "{} are layers of channels, and '{}' is drawn without any: give {}", Parameter("aov", "channels"),
+         description.input.volume, Parameter("channel"));
   for (std::size_t i = 0; i < channels.size(); ++i) {
     SceneDescription alone = description;
+    alone.classification.channels = channels;
     for (std::size_t other = 0; other < channels.size(); ++other)
       alone.classification.channels[other].color = other == i ? channels[i].color.value_or(automaticChannelColor(i)) : glm::vec3(0.0f);
     const Volume volume = alone.readVolume(kMaxNumberedVoxels);

@@ -128,9 +128,11 @@ void checkLayers(const SceneDescription& scene, const Aovs& aovs) {
   if (!aovs.channels) return;
   const Parameter aov("aov", "channels");
   const std::vector<ChannelStyle>& channels = scene.classification.channels;
-  if (channels.empty()) fail(ErrorKind::Usage, "{} are layers of channels, and there are none: give {}", aov, Parameter("channel"));
+  const bool mayHaveOthers = !scene.input.volume.empty() && scene.input.kind() == VolumeKind::Scan && !scene.input.grid;
+  if (channels.empty() && !mayHaveOthers)
+    fail(ErrorKind::Usage, "{} are layers of channels, and there are none: give {}", aov, Parameter("channel"));
   if (!scene.added.empty()) fail(ErrorKind::Usage, "{} is of one volume: leave out {}", aov, Parameter("add"));
-  if (!channels.front().emits && !scene.lighting.unlit && scene.lighting.scattering != 1)
+  if ((channels.empty() || !channels.front().emits) && !scene.lighting.unlit && scene.lighting.scattering != 1)
     fail(ErrorKind::Usage, "light that is scattered more than once is no sum over channels: {} needs {} or {}", aov,
          Parameter("scattering", "1"), Parameter("unlit"));
 }

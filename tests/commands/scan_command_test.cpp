@@ -84,16 +84,57 @@ TEST_F(ScanCommand, ChannelsOfOmeZarrAreDrawnInTheirColours) {
   EXPECT_EQ(json["scan"]["level"], 1);
   EXPECT_EQ(json["scan"]["channels"][1]["name"], "right");
   EXPECT_EQ(json["grids"].size(), 2u);
-  EXPECT_NE(run("info @cells.ome.zarr.zip").out.find("channels    0 left, 1 right"), std::string::npos);
+  const std::string info = run("info @cells.ome.zarr.zip").out;
+  for (const char* part : {"channels    0 left, 1 right", "space       millimetres along the axes of the file"})
+    EXPECT_NE(info.find(part), std::string::npos) << part << " in\n" << info;
 }
 
 TEST_F(ScanCommand, LayersOfChannelsHaveTheColoursOfTheFile) {
   writeBytes(folder / "cells.zip", zipOf(cellsOf(), false));
-  expectSuccess(run("render @cells.zip @a.exr --quiet --unlit --size 32 --channel left --channel right --aov channels"));
   expectSuccess(run("render @cells.zip @b.exr --quiet --unlit --size 32"));
-  const Image layers = readExr(folder / "a.exr"), whole = readExr(folder / "b.exr");
-  for (std::size_t i = 0; i < whole.pixels.size(); ++i)
-    for (int c = 0; c < 3; ++c) ASSERT_NEAR(layers.pixels[i][c], whole.pixels[i][c], 0.01f) << i;  // some rays are interpolated
+  const Image whole = readExr(folder / "b.exr");
+  for (const char* channels : {"--channel left --channel right ", ""}) {
+    expectSuccess(run(std::string("render @cells.zip @a.exr --quiet --unlit --size 32 --aov channels ") + channels));
+    const Image layers = readExr(folder / "a.exr");
+    for (std::size_t i = 0; i < whole.pixels.size(); ++i)
+      for (int c = 0; c < 3; ++c) ASSERT_NEAR(layers.pixels[i][c], whole.pixels[i][c], 0.01f) << i;  // some rays are interpolated
+  }
+  writeBytes(folder / "one.nrrd", nrrdOf(placeOf("LPS")));
+  expectCleanRefusal("render @one.nrrd @c.exr --size 16 --unlit --aov channels", ExitCode::Usage, "one.nrrd");
+}
+
+TEST_F(ScanCommand, PhotographsAreDrawnInTheirColours) {
+  std::string pixels;
+  for (int i = 0; i < 16 * 16; ++i) pixels += i % 16 < 8 ? std::string("\xc8\x14\x14", 3) : std::string("\x14\xb4\x14", 3);
+  TiffFixture stack{.pages = 8, .samples = 3, .photometric = 2, .size = {16, 16}, .hasBytes = true};
+  std::string file = stack.bytes();
+  for (int page = 0; page < stack.pages; ++page) {
+    const std::string values = stack.valuesOf(page);
+    file.replace(file.find(values), values.size(), pixels);
+  }
+  writeBytes(folder / "body_1.tif", file);
+  writeBytes(folder / "body_2.tif", file);
+  const std::string options = " --quiet --unlit --size 64 --orbit 0,0 ";
+  expectSuccess(run("render @body_1.tif @a.exr --save-scene @a.json" + options));
+  const Image image = readExr(folder / "a.exr");
+  const glm::vec4 left = image.pixels[32 * kEdge + 20], right = image.pixels[32 * kEdge + 44];
+  EXPECT_GT(left.r, 20.0f * left.g);
+  EXPECT_GT(right.g, 20.0f * right.r);
+  expectSuccess(run("bake @body_1.tif @a.fvx --quiet"));
+  expectSuccess(run("render @a.fvx @b.exr" + options));
+  expectSuccess(run("render --scene @a.json @c.exr" + options));
+  expectSuccess(run("render @body_#.tif @film_#.exr --no-fixed-view" + options));
+  EXPECT_EQ(readExr(folder / "c.exr").pixels, image.pixels);
+  EXPECT_EQ(readExr(folder / "film_2.exr").pixels, image.pixels);
+  const Image baked = readExr(folder / "b.exr");
+  for (std::size_t i = 0; i < image.pixels.size(); ++i) ASSERT_NEAR(baked.pixels[i].r, image.pixels[i].r, 0.02f) << i;
+  const glm::vec4 grey = [&] {
+    expectSuccess(run("render @body_1.tif @d.exr --albedo 0.5,0.5,0.5" + options));
+    return readExr(folder / "d.exr").pixels[32 * kEdge + 20];
+  }();
+  EXPECT_EQ(grey.r, grey.g);
+  expectCleanRefusal("render @body_1.tif @e.png --size 16 --albedo-grid Cd", ExitCode::Usage, "albedo-grid");
+  EXPECT_NE(run("info @body_1.tif").out.find("0 red, 1 green, 2 blue; they are colours"), std::string::npos);
 }
 
 TEST_F(ScanCommand, ConvertedVolumesAreTheSameImages) {
@@ -155,7 +196,7 @@ TEST_F(ScanCommand, AzimuthNinetySeesTheLeftSide) {
 TEST_F(ScanCommand, InfoPrintsWhatTheHeaderSays) {
   writeDicom(folder / "ct", placeOf("LPS"));
   const ProgramResult text = run("info @ct");
-  for (const char* part : {"DICOM series of 10 slices", "uint16", "x 1 + -1024", "2 3 2.5", "13x9x10", "3..1000"})
+  for (const char* part : {"DICOM series of 10 slices", "uint16", "x 1 + -1024", "2 3 2.5", "13x9x10", "3..1000", "(LPS)"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << " in\n" << text.out;
   const nlohmann::json json = nlohmann::json::parse(run("info @ct --json").out);
   EXPECT_EQ(json["scan"]["rescale"], nlohmann::json({1.0, -1024.0}));
