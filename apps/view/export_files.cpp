@@ -139,6 +139,16 @@ void saveImage(const Device& device, const DrawnImage& drawn, const std::string&
               {{"device", drawn.device.name}, {"driver", drawn.device.driver}});
 }
 
+void saveImageOfSize(const Device& device, const DrawnImage& drawn, glm::ivec2 size, const std::string& file, const Progress& progress) {
+  ImageRequest request = drawn.request;
+  request.scene = sceneInto(drawn, {&file, 1});
+  request.scene.camera.size = size;
+  request.scene.camera.look(drawn.scene.camera);  // what is automatic would depend on the image's shape
+  checkScene(request.scene, {&file, 1});
+  VolumeCache volumes(request.scene, drawn.scene.volume);
+  saveImage(device, ImageMaker(device, volumes).make(request, progress), file);
+}
+
 bool canCopyImages() {
   return !programPath(clipboardCommand().front()).empty();
 }

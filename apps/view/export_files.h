@@ -20,6 +20,8 @@ std::string turnCommandOf(const DrawnImage& drawn, const std::string& pattern, i
 
 /// Writes an image of this device with all that `freevoxels render` would write. Fails as that does.
 void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file);
+/// Draws the same view with another number of pixels, and writes that.
+void saveImageOfSize(const Device& device, const DrawnImage& drawn, glm::ivec2 size, const std::string& file, const Progress& progress);
 /// Whether a program is installed that puts images into the clipboard: wl-copy under Wayland, xclip under X11.
 bool canCopyImages();
 /// Calls this program with the image as a PNG. Fails with ErrorKind::Output if the program does.

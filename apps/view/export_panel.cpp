@@ -4,7 +4,9 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <array>
 #include <filesystem>
+#include <vector>
 
 #include "apps/common/frame_names.h"
 #include "apps/view/export_files.h"
@@ -44,7 +46,13 @@ ExportPanel::ExportPanel(const Device& device, FileDialog& dialog, int turnFrame
 void ExportPanel::askImage() {
   dialog_.save("Save image", imageName_, {".png", ".exr", ".jpg", ".jpeg"}, [this](const std::string& file) {
     imageName_ = file;
-    want({[this, file](const DrawnImage& drawn, const Progress&) { saveImage(device_, drawn, file); }, savedSentence(file)});
+    want({[this, file, size = imageSize_](const DrawnImage& drawn, const Progress& progress) {
+            if (size && *size != drawn.request.scene.camera.size)
+              saveImageOfSize(device_, drawn, *size, file, progress);
+            else
+              saveImage(device_, drawn, file);
+          },
+          savedSentence(file)});
   });
 }
 
@@ -117,7 +125,28 @@ void ExportPanel::draw(ViewState& state) {
     if (state.whole) drawCommand(*state.whole, imageName_);
     ImGui::TreePop();
   }
+  if (ImGui::TreeNode("Size of saved images")) {
+    drawSize(state.scene.camera.size);
+    ImGui::TreePop();
+  }
   ImGui::PopID();
+}
+
+void ExportPanel::drawSize(glm::ivec2 window) {
+  static const std::array kSizes{glm::ivec2(1280, 720), glm::ivec2(1920, 1080), glm::ivec2(3840, 2160)};
+  std::vector<std::string> words{"that of the window"};
+  for (const glm::ivec2 size : kSizes) words.push_back(fmt::format("{} x {}", size.x, size.y));
+  words.push_back("other");
+  const auto known = std::ranges::find(kSizes, imageSize_.value_or(glm::ivec2(0)));
+  int chosen = imageSize_ ? 1 + int(known - kSizes.begin()) : 0;
+  if (choose("Size", words, chosen)) {
+    imageSize_.reset();
+    if (chosen > 0) imageSize_ = chosen <= int(kSizes.size()) ? kSizes[std::size_t(chosen - 1)] : window;
+  }
+  hint("Pixels of images that are saved; another size than the window's is drawn anew", "--size");
+  if (!imageSize_) return;
+  ImGui::InputInt2(beginRow("Pixels"), &imageSize_->x);
+  *imageSize_ = glm::clamp(*imageSize_, 1, kMaximumImageEdge);
 }
 
 std::optional<std::pair<std::string, double>> ExportPanel::activity() const {

@@ -47,10 +47,12 @@ class ExportPanel {
   };
 
   void want(Task task);
+  void drawSize(glm::ivec2 window);
 
   const Device& device_;
   FileDialog& dialog_;
   std::string imageName_ = "image.png", sceneName_ = "scene.json", turnName_ = "turn_####.png";
+  std::optional<glm::ivec2> imageSize_;  ///< of saved images; none: that of the window
   int turnFrames_;
   std::deque<Task> waiting_;  ///< for the image to be complete
   ExportJob job_;             ///< ends before what it uses

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 
+#include "apps/view/export_files.h"
 #include "engine/volume/openvdb_trees.h"
 #include "tests/device/device_fixture.h"
 #include "tests/failing_allocation.h"
@@ -44,6 +45,31 @@ TEST_F(ImageMakerTest, TurningALightKeepsTheVolumeAndItsOccupancy) {
   EXPECT_EQ(timesOf(turned, "upload"), timesOf(first, "upload")) << "measured once";
   EXPECT_EQ(timesOf(first, "bricks").size(), 1u);
   EXPECT_EQ(timesOf(turned, "bricks").size(), 0u);
+}
+
+/// With the camera of the image, whose automatic place would depend on the shape of the image.
+TEST_F(ImageMakerTest, AnImageOfAnotherSizeIsSavedWithTheSameView) {
+  const test::TemporaryFolder folder;
+  ImageRequest request = litCloud();
+  const DrawnImage shown = maker_.make(request, {});
+  const std::string file = (folder.path() / "large.exr").string();
+  saveImageOfSize(device(), shown, {90, 40}, file, {});
+  request.scene.camera.size = {90, 40};
+  request.scene.camera.look(shown.scene.camera);
+  request.scene.output.fullFloat = false;
+  const Image saved = readExr(file), drawn = downloadImage(device(), *maker_.make(request, {}).image);
+  EXPECT_EQ(saved.size, glm::ivec2(90, 40));
+  EXPECT_GT(psnr(saved, drawn), 60.0) << "of 16 bits";
+}
+
+/// A draft has all voxels; its time follows its pixels.
+TEST_F(ImageMakerTest, ImagesOfAMovementResembleTheWholeOne) {
+  ImageRequest request = litCloud();
+  request.scene.input.resolution = glm::ivec3(64);
+  request.scene.camera.size = {96, 96};
+  const Image whole = downloadImage(device(), *maker_.make(request, {}).image);
+  request.purpose = Purpose::Move;
+  EXPECT_GT(psnr(downloadImage(device(), *maker_.make(request, {}).image), whole), 35.0);
 }
 
 TEST_F(ImageMakerTest, AnotherClassificationMakesAnotherOccupancy) {
