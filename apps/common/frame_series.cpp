@@ -238,7 +238,7 @@ void FrameSeries::drawSliceOf(const VolumeSource& source, const VolumeView& view
     ++progress_.drawn;
   }
   report_.voxels = volume->voxelCount();
-  for (const FrameJob* empty : std::exchange(waiting_, {})) writeEmpty(*empty);
+  for (const FrameJob* empty : std::exchange(emptyFramesToWrite_, {})) writeEmpty(*empty);
 }
 
 /// What ends the rays of a frame; null if nothing does. Neighbouring frames of one image read it once.
