@@ -80,12 +80,7 @@ double brightestLight(const Classification& classification, const Volume& volume
 /// The albedo of a voxel, linear, in 0..1.
 glm::vec3 albedoOf(const Classification& classification, const AlbedoGrid& grid, glm::ivec3 voxel);
 
-/// Reads a transfer function of a file: the JSON of apps/manual/classification.md, or a format of another program (transfer_formats.h).
-/// What it leaves to the volume is its range of values and the size of its voxels. Fails with ErrorKind::Input.
-TransferFunction readTransferFunction(const std::filesystem::path& file, const Volume& volume);
-/// Parses our JSON. Unknown keys, wrong types and points that do not ascend fail with ErrorKind::Input and the name of the key.
-TransferFunction parseTransferFunction(const std::string& json, const Volume& volume);
-/// One line of JSON that parses as the same function.
+/// One line of JSON that parses as the same function (transfer_curves.h).
 std::string transferFunctionJson(const TransferFunction& function);
 
 /// The density scale at which a cube that holds the volume of the active voxels at their mean density has

@@ -66,7 +66,8 @@ TransferFunction changed(TransferFunction function, const TransferChange& change
 /// The curves of a function over the range of its points.
 TransferCurves curvesOf(const TransferFunction& function);
 
-/// From the JSON of apps/manual/classification.md. `name` is what sentences call the text. Fails with ErrorKind::Input.
+/// From the JSON of apps/manual/classification.md. `name` is what sentences call the text. Unknown keys, wrong types and points that do not
+/// ascend fail with ErrorKind::Input and the name of the key.
 TransferCurves parseTransferCurves(const std::string& name, const std::string& json);
 /// Such JSON, a key on each line; opacities and colours are rounded to six digits.
 std::string transferCurvesJson(const TransferCurves& curves);

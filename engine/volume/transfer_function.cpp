@@ -146,10 +146,6 @@ TransferCurves parseTransferCurves(const std::string& name, const std::string& j
   return makeCurves(name, parseJson("transfer function", name, json));
 }
 
-TransferFunction parseTransferFunction(const std::string& json, const Volume& volume) {
-  return fitted(parseTransferCurves("inline", json), volume);
-}
-
 std::string transferFunctionJson(const TransferFunction& function) {
   const double low = std::min(function.opacity.front().scalar, function.color.front().scalar);
   const double high = std::max(function.opacity.back().scalar, function.color.back().scalar);

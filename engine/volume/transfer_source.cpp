@@ -97,10 +97,6 @@ std::string transferFile(const std::string& text) {
   return parts ? parts->first : "";
 }
 
-TransferFunction readTransferFunction(const fs::path& file, const Volume& volume) {
-  return fitted(readFile(file, ""), volume);
-}
-
 std::string transferNameIn(const std::string& folder, const std::string& text) {
   if (text.starts_with('{')) return text;
   const fs::path file = fs::path(folder) / text;

@@ -4,8 +4,9 @@
 
 #include <nlohmann/json.hpp>
 
-#include "engine/volume/classification.h"
 #include "engine/description/scene_json.h"
+#include "engine/volume/classification.h"
+#include "engine/volume/transfer_curves.h"
 #include "tests/refusal.h"
 #include "tests/temporary_folder.h"
 
@@ -73,7 +74,7 @@ TEST(JsonFile, SentencesStayShortAndPrintable) {
     test::writeBytes(folder / "a.json", text);
     expectShort([&] { readScene(folder / "a.json"); });
   }
-  expectShort([&] { parseTransferFunction("{\"" + letters + "\":1}", {}); });
+  expectShort([&] { parseTransferCurves("inline", "{\"" + letters + "\":1}"); });
 }
 
 }  // namespace

@@ -4,6 +4,7 @@
 #include "engine/core/json_file.h"
 #include "engine/description/scene_json.h"
 #include "engine/volume/classification.h"
+#include "engine/volume/transfer_curves.h"
 #include "tests/fuzz/fuzz_file.h"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t size) {
@@ -13,7 +14,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* bytes, std::size_t siz
   Volume volume;
   volume.minimum = 0.0f;
   volume.maximum = 2.0f;
-  fuzz::tryTo([&] { transferFunctionJson(parseTransferFunction(text, volume)); });
+  fuzz::tryTo([&] { transferFunctionJson(fitted(parseTransferCurves("inline", text), volume)); });
   fuzz::tryTo([&] {
     const SceneDescription scene = readScene(file.path());
     sceneToJson(scene, std::nullopt).dump(-1, ' ', false, nlohmann::ordered_json::error_handler_t::replace);

@@ -10,6 +10,7 @@
 #include "engine/reference/oracle.h"
 #include "engine/validation/homogeneous_box.h"
 #include "engine/volume/scan.h"
+#include "engine/volume/transfer_curves.h"
 #include "tests/refusal.h"
 
 namespace freevoxels {
@@ -129,7 +130,7 @@ TEST(IsoSurface, IsOpaqueFromItsValueOn) {
   const ClassifiedVoxel inside = classify(classification, 0.5f);
   EXPECT_GT(-std::expm1(-0.01 * volume.voxelSize() * inside.extinction), 0.99) << "a hundredth of a voxel";
   EXPECT_EQ(glm::vec3(inside.color), glm::vec3(0.2f, 0.4f, 0.6f));
-  const Classification again{.transferFunction = parseTransferFunction(transferFunctionJson(function), volume)};
+  const Classification again{.transferFunction = fitted(parseTransferCurves("inline", transferFunctionJson(function)), volume)};
   EXPECT_EQ(classify(again, 0.5f).extinction, inside.extinction) << "as a scene saves it";
   EXPECT_EQ(classify(again, 0.4999f).extinction, 0.0);
 }

@@ -10,6 +10,7 @@
 
 #include "engine/reference/oracle.h"
 #include "engine/volume/procedural.h"
+#include "engine/volume/transfer_source.h"
 #include "tests/not_finite.h"
 
 namespace freevoxels {
@@ -131,8 +132,7 @@ TEST(QualityScenes, TransferFunctionsAreThoseOfTheFiles) {
   for (const auto& [color, file] :
        {std::pair(QualityColor::Bone, "bone.json"), {QualityColor::Cloud, "cloud.json"}}) {
     const TransferFunction ours = qualityTransferFunction(color, volume);
-    const TransferFunction read =
-        readTransferFunction(std::string(FREEVOXELS_TRANSFER_FUNCTIONS "/") + file, volume);
+    const TransferFunction read = fitted(readTransferCurves(std::string(FREEVOXELS_TRANSFER_FUNCTIONS "/") + file), volume);
     EXPECT_EQ(ours.unitDistance, read.unitDistance);
     ASSERT_EQ(ours.opacity.size(), read.opacity.size()) << file;
     for (std::size_t i = 0; i < read.opacity.size(); ++i) {

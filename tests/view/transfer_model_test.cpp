@@ -7,6 +7,7 @@
 #include "engine/core/error.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/procedural.h"
+#include "engine/volume/transfer_source.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels {
@@ -46,14 +47,14 @@ TEST(TransferModel, WritesWhatItReads) {
     SCOPED_TRACE(text);
     const std::string written = TransferModel::read(text, volume).json();
     EXPECT_EQ(written.find('\n'), std::string::npos);
-    expectSame(parseTransferFunction(written, volume), parseTransferFunction(text, volume));
+    expectSame(fitted(parseTransferCurves("inline", written), volume), fitted(parseTransferCurves("inline", text), volume));
   }
 }
 
 TEST(TransferModel, ReadsFilesAndRefusesWhatTheProgramsRefuse) {
   const std::string file = FREEVOXELS_TRANSFER_FUNCTIONS "/cloud.json";
   const TransferModel model = TransferModel::read(file, smallVolume());
-  expectSame(parseTransferFunction(model.json(), smallVolume()), readTransferFunction(file, smallVolume()));
+  expectSame(fitted(parseTransferCurves("inline", model.json()), smallVolume()), fitted(readTransferCurves(file), smallVolume()));
   EXPECT_THROW(TransferModel::read("nowhere.json", smallVolume()), Error);
   EXPECT_THROW(TransferModel::read(R"({"opacity": [[0, 2]]})", smallVolume()), Error);
 }
@@ -107,7 +108,7 @@ TEST(TransferModel, PointsStayBetweenTheirNeighbours) {
   EXPECT_DOUBLE_EQ(model.color[1].x, 0.201);
   model.moveColor(0, -5.0);
   EXPECT_EQ(model.color[0].x, 0.0);
-  EXPECT_NO_THROW(parseTransferFunction(model.json(), smallVolume()));
+  EXPECT_NO_THROW(fitted(parseTransferCurves("inline", model.json()), smallVolume()));
 }
 
 TEST(TransferModel, KeepsItsEndsAndAColour) {

@@ -6,6 +6,7 @@
 
 #include "engine/core/error.h"
 #include "engine/volume/procedural.h"
+#include "engine/volume/transfer_source.h"
 #include "tests/temporary_folder.h"
 
 namespace freevoxels {
@@ -77,7 +78,7 @@ class TransferFunctionFile : public testing::Test {
  protected:
   TransferFunction read(const std::string& json) const {
     writeBytes(file, json);
-    return readTransferFunction(file, smallVolume());
+    return fitted(readTransferCurves(file.string()), smallVolume());
   }
   void expectRefused(const std::string& json, std::initializer_list<std::string> parts) const {
     SCOPED_TRACE(json);
@@ -125,7 +126,7 @@ TEST_F(TransferFunctionFile, DefaultsToTheVolumesRangeItsVoxelSizeAndWhite) {
 TEST_F(TransferFunctionFile, OfAUniformVolumeEndsAtItsLastPoint) {
   writeBytes(file, R"({"opacity": [[0, 0], [1, 0.75]]})");
   Classification classification;
-  classification.transferFunction = readTransferFunction(file, makeProcedural("cube", 2));
+  classification.transferFunction = fitted(readTransferCurves(file.string()), makeProcedural("cube", 2));
   EXPECT_NEAR(1.0 - std::exp(-0.5 * classify(classification, 1.0f).extinction), 0.75, 1e-12);
 }
 
@@ -179,8 +180,8 @@ TEST_F(TransferFunctionFile, RefusesWhatIsNotJson) {
 }
 
 TEST_F(TransferFunctionFile, RefusesMissingFilesAndFolders) {
-  EXPECT_THROW(readTransferFunction(folder / "none.json", smallVolume()), Error);
-  EXPECT_THROW(readTransferFunction(folder.path(), smallVolume()), Error);
+  EXPECT_THROW(readTransferCurves((folder / "none.json").string()), Error);
+  EXPECT_THROW(readTransferCurves(folder.path().string()), Error);
 }
 
 }  // namespace

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "engine/volume/procedural.h"
+#include "engine/volume/transfer_curves.h"
 
 namespace freevoxels {
 namespace {
@@ -35,7 +36,7 @@ void expectValid(const Volume& volume) {
   for (std::size_t i = 1; i < function.opacity.size(); ++i)
     EXPECT_LT(function.opacity[i - 1].scalar, function.opacity[i].scalar);
   for (std::size_t i = 1; i < function.color.size(); ++i) EXPECT_LT(function.color[i - 1].scalar, function.color[i].scalar);
-  const TransferFunction again = parseTransferFunction(transferFunctionJson(function), volume);
+  const TransferFunction again = fitted(parseTransferCurves("inline", transferFunctionJson(function)), volume);
   ASSERT_EQ(again.opacity.size(), function.opacity.size());
   for (std::size_t i = 0; i < function.opacity.size(); ++i) {
     EXPECT_EQ(again.opacity[i].scalar, function.opacity[i].scalar);
