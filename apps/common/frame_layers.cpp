@@ -34,9 +34,6 @@ std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, cons
   ScanRequest request = description.input.scanRequest(kMaxNumberedVoxels);
   request.channels = description.classification.channels;
   const std::vector<ChannelStyle> channels = isScan ? scanChannels(description.input.volume, request) : request.channels;
-  if (channels.empty())
-    fail(ErrorKind::Usage, "{} are layers of channels, and '{}' is drawn without any: give {}", Parameter("aov", "channels"),
-         description.input.volume, Parameter("channel"));
   for (std::size_t i = 0; i < channels.size(); ++i) {
     SceneDescription alone = description;
     alone.classification.channels = channels;

@@ -128,8 +128,9 @@ void checkLayers(const SceneDescription& scene, const Aovs& aovs) {
   if (!aovs.channels) return;
   const Parameter aov("aov", "channels");
   const std::vector<ChannelStyle>& channels = scene.classification.channels;
-  const bool mayHaveOthers = !scene.input.volume.empty() && scene.input.kind() == VolumeKind::Scan && !scene.input.grid;
-  if (channels.empty() && !mayHaveOthers)
+  const InputDescription& input = scene.input;
+  const bool isScan = !input.volume.empty() && input.kind() == VolumeKind::Scan;
+  if (channels.empty() && (!isScan || scanChannels(input.volume, input.scanRequest(kMaxNumberedVoxels)).empty()))
     fail(ErrorKind::Usage, "{} are layers of channels, and there are none: give {}", aov, Parameter("channel"));
   if (!scene.added.empty()) fail(ErrorKind::Usage, "{} is of one volume: leave out {}", aov, Parameter("add"));
   if ((channels.empty() || !channels.front().emits) && !scene.lighting.unlit && scene.lighting.scattering != 1)
