@@ -100,7 +100,7 @@ TEST_F(ScanCommand, LayersOfChannelsHaveTheColoursOfTheFile) {
       for (int c = 0; c < 3; ++c) ASSERT_NEAR(layers.pixels[i][c], whole.pixels[i][c], 0.01f) << i;  // some rays are interpolated
   }
   writeBytes(folder / "one.nrrd", nrrdOf(placeOf("LPS")));
-  expectCleanRefusal("render @one.nrrd @c.exr --size 16 --unlit --aov channels", ExitCode::Usage, "one.nrrd");
+  expectCleanRefusal("render @one.nrrd @c.exr --size 16 --unlit --aov channels", ExitCode::Usage, "--channel");
 }
 
 TEST_F(ScanCommand, PhotographsAreDrawnInTheirColours) {
@@ -211,6 +211,11 @@ TEST_F(ScanCommand, BakedAndNumberedScansAreTheSameImages) {
   expectSuccess(run("bake @a_2.nrrd @a.fvx --quiet --density-scale 0.0002"));
   expectSuccess(run("render @a.fvx @b.exr --quiet --unlit --size 64"));
   EXPECT_EQ(readExr(folder / "b.exr").size, whole.size);
+  writeBytes(folder / "a.bin", bytesOf<std::uint16_t>(letterOf(placeOf("LPS"))));
+  expectSuccess(run("bake @a.bin @raw.fvx --quiet --density-scale 0.0002 --raw 13x9x10,u16 --spacing 2,3,2.5"));
+  expectSuccess(run("render @raw.fvx @c.exr --quiet --unlit --size 64"));
+  const glm::vec4 there = readExr(folder / "c.exr").pixels[40 * kEdge + 20], expected = whole.pixels[40 * kEdge + 20];
+  EXPECT_NEAR(there.a, expected.a, 0.02f);
   expectSuccess(run("render @a_#.nrrd @film_#.exr --quiet --unlit --size 64 --density-scale 0.0002 --no-fixed-view"));
   EXPECT_EQ(readExr(folder / "film_2.exr").pixels, whole.pixels);
 }
