@@ -23,8 +23,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// How a file is read. Unknown are those of formats that are refused.
-enum class Format { Nrrd, MetaImage, Nifti, Tiff, Vtk, Vti, Dicom, Raw, Zarr, Unknown };
+/// How a file is read. MRC maps are recognised to be refused in a sentence that helps.
+enum class Format { Nrrd, MetaImage, Nifti, Tiff, Vtk, Vti, Dicom, Raw, Zarr, Mrc };
 
 struct Ending {
   std::string_view ending;
@@ -37,9 +37,9 @@ constexpr std::array<Ending, 22> kEndings{
      {".nii", Format::Nifti},         {".nii.gz", Format::Nifti},  {".nrrd", Format::Nrrd},     {".nhdr", Format::Nrrd},
      {".mha", Format::MetaImage},     {".mhd", Format::MetaImage}, {".vti", Format::Vti},       {".vtk", Format::Vtk},
      {".dcm", Format::Dicom},         {".ima", Format::Dicom},     {".tif", Format::Tiff},      {".tiff", Format::Tiff},
-     {".raw", Format::Raw},           {".mrc", Format::Unknown}}};
+     {".raw", Format::Raw},           {".mrc", Format::Mrc}}};
 
-/// "ct" of "scans/ct/".
+/// The last component of a path, also of one that ends in a slash: "ct" for "scans/ct/".
 std::string fileNameOf(const fs::path& file) {
   return (file.has_filename() ? file : file.parent_path()).filename().string();
 }
@@ -91,7 +91,7 @@ Format formatOf(const fs::path& file, const ScanRequest& request) {
   return Format::Dicom;
 }
 
-std::unique_ptr<ScanReader> open(const fs::path& file, Format format, const ScanRequest& request) {
+std::unique_ptr<ScanReader> openReader(const fs::path& file, Format format, const ScanRequest& request) {
   switch (format) {
     case Format::Nrrd:
       return openItkScan(file, ItkFormat::Nrrd);
@@ -116,7 +116,7 @@ std::unique_ptr<ScanReader> open(const fs::path& file, Format format, const Scan
     }
     case Format::Zarr:
       return openNgffScan(file, request);
-    case Format::Unknown:
+    case Format::Mrc:
       break;
   }
   fail(ErrorKind::Input, "'{}' is an MRC map, which is not read: convert it to NRRD or NIfTI", file.string());
@@ -131,7 +131,7 @@ void checkRequest(const fs::path& file, Format format, const ScanRequest& reques
 }
 
 /// The sides of the box that the header says, with the request's spacing.
-void space(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
+void applySpacing(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
   if (!spacing) return;
   if (header.space == ScanSpace::File) header.space = ScanSpace::Millimetres;
   for (int axis = 0; axis < 3; ++axis) {
@@ -143,14 +143,14 @@ void space(ScanHeader& header, const std::optional<glm::dvec3>& spacing) {
   }
 }
 
-struct Opened {
+struct OpenedScan {
   std::unique_ptr<ScanReader> reader;
   ScanHeader header;
 };
 
 /// Runs `work`, and says of what a library throws which file it is about.
 template <typename Work>
-auto guarded(const fs::path& file, const Work& work) {
+auto withFileErrors(const fs::path& file, const Work& work) {
   const CrashNote note(fmt::format("cannot read '{}': the file is damaged; copy or download it again", printable(file.string())));
   try {
     return work();
@@ -161,13 +161,13 @@ auto guarded(const fs::path& file, const Work& work) {
   }
 }
 
-Opened openScan(const fs::path& file, const ScanRequest& request) {
+OpenedScan openScan(const fs::path& file, const ScanRequest& request) {
   std::error_code error;
   const bool isFolder = fs::is_directory(file, error);
   if (!isFolder) checkInputFile("scan", file);
   const Format format = formatOf(file, request);
   checkRequest(file, format, request);
-  Opened opened{.reader = open(file, format, request), .header = {}};
+  OpenedScan opened{.reader = openReader(file, format, request), .header = {}};
   opened.header = opened.reader->header();
   opened.header.areColors |= opened.header.components > 1;
   // Those of VTK are arrays, which have names.
@@ -175,7 +175,7 @@ Opened openScan(const fs::path& file, const ScanRequest& request) {
   const bool isSingle = opened.header.channels.empty() && format != Format::Vti && format != Format::Zarr && format != Format::Tiff;
   if (!request.array.empty() && isSingle)
     fail(ErrorKind::Usage, "{} chooses among several, and '{}' has one grid of values", Parameter("grid"), file.string());
-  space(opened.header, request.spacing);
+  applySpacing(opened.header, request.spacing);
   const int step = request.timeStep.value_or(0);
   if (step >= opened.header.timeSteps)
     fail(ErrorKind::Usage, "{} is none of '{}', which has {} time step{}, counted from 0", Parameter("time-step", fmt::format("{}", step)),
@@ -189,7 +189,7 @@ VoxelBox partOf(const ScanHeader& header) {
 }
 
 /// Fails before memory is taken.
-void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximumVoxels, std::size_t channels) {
+void checkSize(const fs::path& file, const OpenedScan& opened, std::uint64_t maximumVoxels, std::size_t channels) {
   const VoxelBox part = partOf(opened.header);
   const glm::ivec3 size = part.last - part.first + 1;
   const std::uint64_t voxels = std::uint64_t(size.x) * std::uint64_t(size.y) * std::uint64_t(size.z);
@@ -207,7 +207,7 @@ void checkSize(const fs::path& file, const Opened& opened, std::uint64_t maximum
 }
 
 /// The scalars of the channels with these numbers; of channels that follow each other in every voxel in one pass.
-std::vector<ScalarBricks> readChannels(const Opened& opened, const ScanRequest& request, const std::vector<int>& numbers) {
+std::vector<ScalarBricks> readChannels(const OpenedScan& opened, const ScanRequest& request, const std::vector<int>& numbers) {
   const VoxelBox box = partOf(opened.header);
   std::vector<ScanVoxels> voxels;
   for (std::size_t i = 0; i < numbers.size(); ++i) voxels.emplace_back(box.last - box.first + 1, box.first);
@@ -230,7 +230,7 @@ std::vector<ScalarBricks> readChannels(const Opened& opened, const ScanRequest& 
 }
 
 /// The volume of what is chosen.
-Volume chosenVolume(const fs::path& file, const Opened& opened, const ScanRequest& request, ChosenChannels chosen) {
+Volume chosenVolume(const fs::path& file, const OpenedScan& opened, const ScanRequest& request, ChosenChannels chosen) {
   const ScanHeader& header = opened.header;
   const std::string name = fileNameOf(file);
   glm::dmat4 indexToWorld = header.indexToWorld;
@@ -292,7 +292,7 @@ std::span<const std::string_view> scanEndings() {
   static const std::vector<std::string_view> endings = [] {
     std::vector<std::string_view> all;
     for (const Ending& one : kEndings)
-      if (one.format != Format::Unknown) all.push_back(one.ending);
+      if (one.format != Format::Mrc) all.push_back(one.ending);
     return all;
   }();
   return endings;
@@ -306,19 +306,19 @@ std::string stemOf(const fs::path& file) {
 }
 
 ScanHeader readScanHeader(const fs::path& file, const ScanRequest& request) {
-  return guarded(file, [&] { return openScan(file, request).header; });
+  return withFileErrors(file, [&] { return openScan(file, request).header; });
 }
 
 std::vector<ChannelStyle> scanChannels(const fs::path& file, const ScanRequest& request) {
-  return guarded(file, [&] {
-    Opened opened = openScan(file, request);
+  return withFileErrors(file, [&] {
+    OpenedScan opened = openScan(file, request);
     return chosenChannels(file, opened.header, request).styles;
   });
 }
 
 Volume readScan(const fs::path& file, const ScanRequest& request) {
-  return guarded(file, [&] {
-    Opened opened = openScan(file, request);
+  return withFileErrors(file, [&] {
+    OpenedScan opened = openScan(file, request);
     const ChosenChannels chosen = chosenChannels(file, opened.header, request);
     checkSize(file, opened, request.maximumVoxels, chosen.numbers.size());
     Volume volume = chosenVolume(file, opened, request, chosen);
