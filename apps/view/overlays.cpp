@@ -6,6 +6,7 @@
 #include <array>
 #include <cmath>
 
+#include "apps/common/annotation.h"
 #include "apps/view/transfer_model.h"
 #include "apps/view/widgets.h"
 
@@ -147,11 +148,6 @@ std::optional<ImVec2> ImageFrame::place(const Camera& camera, glm::dvec3 world) 
       camera.orthographic ? 0.5 * camera.orthographicHeight : -seen.z * std::tan(0.5 * glm::radians(camera.verticalFov));
   const double pixels = 0.5 * double(high.y - low.y) / halfHeight;
   return ImVec2(0.5f * (low.x + high.x) + float(seen.x * pixels), 0.5f * (low.y + high.y) - float(seen.y * pixels));
-}
-
-double roundLength(double length) {
-  const double power = std::pow(10.0, std::floor(std::log10(length)));
-  return (length >= 5.0 * power ? 5.0 : length >= 2.0 * power ? 2.0 : 1.0) * power;
 }
 
 double pixelLength(const Camera& camera, double height) {

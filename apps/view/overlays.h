@@ -22,9 +22,6 @@ struct ImageFrame {
   std::optional<ImVec2> place(const Camera& camera, glm::dvec3 world) const;
 };
 
-/// A round length: 1, 2 or 5 times a power of ten, the largest that is at most `length`, which is above 0.
-double roundLength(double length);
-
 /// World length of a pixel at the look-at point, of an image `height` pixels high.
 double pixelLength(const Camera& camera, double height);
 

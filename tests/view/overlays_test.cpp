@@ -5,6 +5,8 @@
 #include <cmath>
 #include <glm/gtc/matrix_transform.hpp>
 
+#include "apps/common/annotation.h"
+
 namespace freevoxels {
 namespace {
 
