@@ -42,7 +42,8 @@ ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int
                        .number = lastRequest_,
                        .revision = revision_,
                        .purpose = purpose,
-                       .voxelsAlongEdge = voxels};
+                       .voxelsAlongEdge = voxels,
+                       .scale = scale};
   glm::ivec2& size = request.scene.camera.size;
   size = glm::max(glm::ivec2(glm::round(scale * glm::dvec2(size))), glm::ivec2(1));
   return request;

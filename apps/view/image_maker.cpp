@@ -174,6 +174,7 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   if (request.purpose != Purpose::Whole && settings.gathers()) {  // a draft
     settings.gather().mostSamplesAcrossPixel = 1.0;
     settings.gather().sampleTolerance = 0.0f;
+    settings.lod *= float(request.scale);
   }
   drawn.image = renderer.renderOnDevice(drawn.scene.camera, settings, progress);
   drawn.shown = {drawn.image, &drawn.image->colorEnergy};

@@ -58,6 +58,9 @@ struct ImageRequest {
   Purpose purpose = Purpose::Whole;
   /// Largest number of voxels along the volume's longest edge. Of larger volumes, means of blocks are drawn.
   int voxelsAlongEdge = kAllVoxels;
+  /// Edges of the image over those of the whole image. Blocks of the octree are drawn as in that, so that none are made for a quick image
+  /// alone.
+  double scale = 1.0;
 };
 
 struct DrawnImage {
