@@ -55,7 +55,7 @@ TEST(AdaptiveResolution, IsAsFineAsTimeAllows) {
   AdaptiveResolution pace(AdaptiveResolution::Voxels::Fewer);
   for (int i = 0; i < 20; ++i) pace.took(500.0);
   EXPECT_LT(pace.voxelsAlongEdge(), 48);
-  for (int i = 0; i < 1000; ++i) pace.took(timeOf(pace, 5.0, 20.0));
+  for (int i = 0; i < 2000; ++i) pace.took(timeOf(pace, 2.0, 10.0));
   EXPECT_EQ(pace.voxelsAlongEdge(), 128);
   EXPECT_EQ(pace.scale(), 1.0);
 }
