@@ -43,7 +43,6 @@ void RendererStages::clearGather(const Camera& camera, const FrameSettings& sett
 std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const FrameSettings& settings,
                                                     std::span<const std::uint32_t> places) const {
   const Device& device = state_.scene.device;
-  clearGather(camera, settings);
   const GatherDrawing::Frame frame = state_.gather.prepare(camera, settings, {});
   constexpr std::size_t kGroup = shader::kGatherTile * shader::kGatherTile;
   const auto groups = std::uint32_t((places.size() + kGroup - 1) / kGroup);
@@ -57,6 +56,7 @@ std::vector<GatherSums> RendererStages::marchListed(const Camera& camera, const 
   Commands commands(device);
   GatherPass& pass = state_.gather.pass();
   pass.begin(commands, frame.lattice);
+  pass.recordClear(commands, frame.lattice);
   pass.dispatch(commands, state_.gather.volume(), frame.lattice, {.frame = &pass.frameBuffer(), .arguments = &list, .mostGroups = groups},
                 {.list = addressWords(list.address()), .step = 0, .groupsOfARow = 1, .rowsOfARange = int(groups)});
   commands.submitAndWait();

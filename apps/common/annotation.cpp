@@ -47,7 +47,7 @@ Ink inkOver(const Image& image, const std::optional<Background>& behind, const A
       const glm::vec4& pixel = image.pixels[std::size_t(y) * std::size_t(image.size.x) + std::size_t(x)];
       const glm::vec3 back = behind ? glm::mix(behind->top, behind->bottom, (float(y) + 0.5f) / float(image.size.y)) : glm::vec3(0.0f);
       const glm::vec3 shown = glm::vec3(pixel) + std::max(1.0f - pixel.a, 0.0f) * back;
-      sum += double(glm::dot(glm::min(shown, 1.0f), glm::vec3(0.2126f, 0.7152f, 0.0722f)));
+      sum += double(glm::dot(glm::min(shown, 1.0f), glm::vec3(kLuminance)));
     }
   const bool isBright = count > 0.0 && sum > kMiddle * count;
   return isBright ? Ink{glm::vec3(0.0f), glm::vec3(1.0f)} : Ink{};

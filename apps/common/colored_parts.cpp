@@ -16,9 +16,6 @@ namespace {
 constexpr double kGoldenRatio = 0.6180339887498949;
 constexpr double kSaturation = 0.85;
 
-/// The luminance of linear Rec.709 red, green and blue.
-constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
-
 void color(FixedSums& sums, glm::dvec3 color) {
   const std::size_t pixels = sums.pixelCount();
   std::int64_t* const values = sums.values.data();

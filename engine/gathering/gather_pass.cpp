@@ -287,7 +287,6 @@ void GatherPass::record(Commands& commands, const GatherVolume& volume, const sh
 }
 
 void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
-  commands.beginPass("gather image");
   begin(commands, frame);
   recordPixels(commands, frame, scalars, targets);
 }

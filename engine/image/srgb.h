@@ -3,11 +3,15 @@
 
 #include <cmath>
 #include <cstdint>
+#include <glm/glm.hpp>
 #include <span>
 
 #include "shaders/display_interface.h"
 
 namespace freevoxels {
+
+/// The luminance of linear Rec.709, whose primaries sRGB has: Y = dot(kLuminance, rgb).
+inline constexpr glm::dvec3 kLuminance{0.2126, 0.7152, 0.0722};
 
 /// 0..1 to 0..1.
 inline float srgbFromLinear(float linear) {

@@ -10,13 +10,12 @@
 #include <functional>
 
 #include "engine/core/error.h"
+#include "engine/image/srgb.h"
 #include "engine/volume/blackbody.h"
 
 namespace freevoxels {
 
 namespace {
-
-constexpr glm::dvec3 kLuminance(0.2126, 0.7152, 0.0722);  // of linear Rec.709
 
 /// Interpolates piecewise linearly, constant beyond the ends. `valueOf(point)` is the interpolated value.
 template <typename Points, typename ValueOf>

@@ -14,7 +14,6 @@ namespace freevoxels {
 namespace {
 
 constexpr std::size_t kOpacity = 3;
-const glm::vec3 kSrgbLuminance(0.2126f, 0.7152f, 0.0722f);  // of Rec.709
 
 /// Whether all voxels have the same value.
 bool isUniform(const ScalarBricks& values) {
@@ -43,7 +42,7 @@ void showColors(Volume& volume, std::vector<ScalarBricks> components, SampleType
         value = isSrgb ? linearFromSrgb(value / largest) : value / largest;
         color[c] = value;
       }
-      density = hasOpacity ? density / largest : srgbFromLinear(std::min(glm::dot(color, kSrgbLuminance), 1.0f));
+      density = hasOpacity ? density / largest : srgbFromLinear(std::min(glm::dot(color, glm::vec3(kLuminance)), 1.0f));
       if (density <= 0.0f) density = kInactiveVoxel;
     }
   });
