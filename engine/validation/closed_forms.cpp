@@ -47,14 +47,14 @@ Check checkTable(const StageMaker& make, AttenuationCode code) {
                       "codes");
 }
 
-struct View {
+struct ViewAngles {
   double azimuth, elevation;
   bool orthographic;
 };
-constexpr std::array<View, 4> kViews{{{35, 25, false}, {0, 0, false}, {-160, -50, true}, {45, 35.26, true}}};
+constexpr std::array<ViewAngles, 4> kCubeViews{{{35, 25, false}, {0, 0, false}, {-160, -50, true}, {45, 35.26, true}}};
 
 /// The cube's bounding sphere fits the image.
-Camera cameraOf(const Volume& cube, const View& view) {
+Camera cameraOf(const Volume& cube, const ViewAngles& view) {
   Camera camera = framingCamera(cube, view.azimuth, view.elevation, 1.0, {});
   camera.position = 3.0 * glm::normalize(camera.position);
   camera.orthographic = view.orthographic;
@@ -69,7 +69,7 @@ void checkCube(const StageMaker& make, int edge, ReportSection& section) {
   const Volume cube = constantVolume(glm::ivec3(edge), cubeTransform(glm::ivec3(edge)), 1.0);
   const auto device = make(cube, physical(sigma, color), {});
   ImageRow row{.caption = "A homogeneous cube: the device's images", .images = {}};
-  for (const View& view : kViews) {
+  for (const ViewAngles& view : kCubeViews) {
     const Camera camera = cameraOf(cube, view);
     const BoxImage box = boxImage(cube, sigma, color, camera, size);
     const Image image = device->image(camera, {.size = size, .method = SplatSettings{}});

@@ -9,28 +9,27 @@
 #include "engine/image/metrics.h"
 #include "engine/renderer.h"
 #include "engine/validation/max_error.h"
+#include "engine/validation/quality_images.h"
 #include "engine/volume/subject.h"
 
 namespace freevoxels {
 
 namespace {
 
-constexpr float kAmplification = 20.0f;
-
-struct View {
+struct NamedView {
   std::string name;
   Camera camera;
 };
 
-std::vector<View> viewsOf(const Volume& volume) {
-  std::vector<View> views;
+std::vector<NamedView> viewsOf(const Volume& volume) {
+  std::vector<NamedView> views;
   for (const QualityView& view : quickQualityViews())
     views.push_back({viewText(view), viewCamera(volume, view)});
   views.push_back({"orthographic", framingCamera(volume, 200.0, 10.0, 1.0, {.orthographic = true})});
-  View part{"a small part", viewCamera(volume, {})};
+  NamedView part{"a small part", viewCamera(volume, {})};
   part.camera.verticalFov /= 8.0;
   views.push_back(part);
-  View inside{"from inside", viewCamera(volume, {.azimuth = 110.0, .elevation = -35.0})};
+  NamedView inside{"from inside", viewCamera(volume, {.azimuth = 110.0, .elevation = -35.0})};
   inside.camera.position = inside.camera.lookAt + 0.1 * (inside.camera.position - inside.camera.lookAt);
   views.push_back(inside);
   return views;
@@ -44,15 +43,6 @@ std::vector<std::string> countsRow(const std::string& name, const CutCounts& cou
     row.push_back(fmt::format("{}", count));
   row.push_back(fmt::format("{:.1f} %", 100.0 * double(drawn) / double(voxels)));
   return row;
-}
-
-Image amplifiedDifference(const Image& a, const Image& b) {
-  Image difference = a;
-  for (std::size_t i = 0; i < a.pixels.size(); ++i) {
-    const glm::vec3 apart = kAmplification * glm::abs(glm::vec3(a.pixels[i] - b.pixels[i]));
-    difference.pixels[i] = glm::vec4(apart, 1.0f);
-  }
-  return difference;
 }
 
 }  // namespace
@@ -72,7 +62,7 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
   MaxError worst, worstClipped;
   double leastPsnr = 1e9;
   std::string leastAt;
-  for (const View& view : viewsOf(scene.volume)) {
+  for (const NamedView& view : viewsOf(scene.volume)) {
     const Image expected = renderer.render(view.camera, whole);
     const Image inImage = renderer.render(view.camera, clipped);
     worstClipped.take(largestDifference(inImage, expected).figure(), [&] { return view.name; });
@@ -87,7 +77,7 @@ ReportSection cullingChecks(const Device& device, const QualityScene& scene, int
       section.imageRows = {{.caption = fmt::format("Where they differ most: {}", view.name),
                             .images = {{"everything", expected},
                                        {"culled", image},
-                                       {fmt::format("difference times {:g}", kAmplification), amplifiedDifference(image, expected)}}}};
+                                       {fmt::format("{:g} times the difference", kDifferenceGain), visibleDifference(image, expected)}}}};
       return view.name;
     });
   }

@@ -21,7 +21,7 @@ namespace freevoxels {
 namespace {
 
 constexpr double kSampleTolerance = 1e-4, kStencilTolerance = 2e-5;
-constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-4;
+constexpr double kDistanceTolerance = 1e-4;
 /// The tolerance of scalars, which may round to the next interval of the transfer function's table, or to more or less than the least change
 /// whose mean is an integral.
 constexpr double kScalarTolerance = 3e-3;

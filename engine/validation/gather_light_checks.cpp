@@ -222,7 +222,7 @@ ReportSection gatherEmissionChecks(const GatherMaker& make, glm::ivec2 size) {
 namespace {
 
 /// Opaque spheres in a box of kSphereBox voxels.
-constexpr int kSphereBox = 48, kPixelsPerVoxel = 4, kSpherePixels = kSphereBox * kPixelsPerVoxel;
+constexpr int kSphereBox = 48, kSpherePixelsPerVoxel = 4, kSpherePixels = kSphereBox * kSpherePixelsPerVoxel;
 constexpr double kRadius = 20.0;  ///< voxels
 constexpr int kFewestComparedPixels = 5000;
 
@@ -256,7 +256,7 @@ void checkSphere(const Image& image, glm::dvec3 toLight, double meanTolerance, d
   int count = 0;
   for (int y = 0; y < kSpherePixels; ++y)
     for (int x = 0; x < kSpherePixels; ++x) {
-      const glm::dvec2 place = (glm::dvec2(x, kSpherePixels - 1 - y) - 0.5 * (kSpherePixels - 1)) / (kPixelsPerVoxel * kRadius);
+      const glm::dvec2 place = (glm::dvec2(x, kSpherePixels - 1 - y) - 0.5 * (kSpherePixels - 1)) / (kSpherePixelsPerVoxel * kRadius);
       if (glm::length(place) > 0.8) continue;
       const glm::dvec3 normal(place, std::sqrt(1.0 - glm::dot(place, place)));
       if (glm::dot(normal, toLight) < 0.3) continue;

@@ -22,7 +22,6 @@ namespace {
 
 /// Tolerance for sums of a few hundred 32-bit floats in another order, relative to the largest in the image.
 constexpr double kOrderTolerance = 1e-5;
-constexpr double kImageTolerance = 1e-5;
 /// Tolerance for codes that round to the other side when a line is swept by another shader, which changes the
 /// colour of a pixel where few voxels mix.
 constexpr double kAxesTolerance = 5e-3;

@@ -62,11 +62,11 @@ Volume volumeOf(const LayerStacks& stacks) {
 }
 
 /// A view from above; pixel centres are at multiples of 1 / kPixelsPerVoxel from voxel (0, 0).
-struct View {
+struct ViewFromAbove {
   glm::ivec2 size;
   Camera camera;
 
-  explicit View(const Volume& volume) : size(kPixelsPerVoxel * glm::ivec2(volume.dimensions)) {
+  explicit ViewFromAbove(const Volume& volume) : size(kPixelsPerVoxel * glm::ivec2(volume.dimensions)) {
     const glm::dvec2 middle = 0.5 * glm::dvec2(size - 1) / double(kPixelsPerVoxel);
     camera = lookingDown(middle.x, middle.y, double(volume.dimensions.y));
   }
@@ -78,7 +78,7 @@ struct View {
 
 std::vector<Stack> drawStacks(const StageMaker& make, const LayerStacks& stacks) {
   const Volume volume = volumeOf(stacks);
-  const View view(volume);
+  const ViewFromAbove view(volume);
   const auto outputs = make(volume, physical(1.0, glm::vec3(1.0f)), {});
   const std::vector<SplatSums> sums = outputs->sums(view.camera, {.size = view.size, .method = SplatSettings{}});
   const Image sorted = outputs->image(view.camera, {.size = view.size, .method = SplatSettings{.composite = Composite::Sorted}});

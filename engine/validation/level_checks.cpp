@@ -22,7 +22,6 @@ constexpr double kLightTolerance = 2e-3;       ///< half a step of 9 bits
 constexpr double kLightFloor = 1e-3;           ///< as a fraction of the brightest: fainter blocks count as that
 constexpr double kColorTolerance = 1e-3;       ///< for 16-bit halves
 constexpr double kCodeTolerance = 1.0;
-constexpr double kImageTolerance = 1e-5;
 constexpr int kCameras = 24;
 
 struct Variant {

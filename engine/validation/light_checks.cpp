@@ -11,6 +11,7 @@
 #include "engine/renderer.h"
 #include "engine/validation/homogeneous_box.h"
 #include "engine/validation/max_error.h"
+#include "engine/validation/quality_images.h"
 #include "engine/validation/sky_environment.h"
 #include "engine/volume/procedural.h"
 
@@ -18,7 +19,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr float kDifferenceGain = 8.0f;
 constexpr double kBallRadius = 3.0;  ///< voxels
 /// The fraction of the light that a ball takes from the fog that may be missing beside its shadow. A shadow
 /// in voxels is wider than the ball's by the footprints of the fog.
@@ -36,12 +36,6 @@ constexpr std::array<Shadows, 2> kShadows{{{"table", LightAttenuation::Table, kT
 
 Lighting sideLight(LightAttenuation attenuation) {
   return {.lights = {{.place = {1.0, 1.0, 0.3}}}, .attenuation = attenuation};
-}
-
-Image amplified(const Image& a, const Image& b) {
-  Image difference = absoluteDifference(a, b);
-  for (glm::vec4& pixel : difference.pixels) pixel = glm::vec4(kDifferenceGain * glm::vec3(pixel), 1.0f);
-  return difference;
 }
 
 /// A view from the side that shows all of a box of edge 1.
@@ -88,7 +82,7 @@ void checkBall(const Device& device, int resolution, ReportSection& section) {
     FrameSettings settings{.size = glm::ivec2(4 * resolution), .method = SplatSettings{}};
     settings.lighting = Lighting{.lights = {{.place = direction}}, .attenuation = shadows.attenuation};
     const Image empty = fog.render(kBoxCamera, settings), shaded = ball.render(kBoxCamera, settings);
-    row.images.push_back({fmt::format("{}: {:g} times what is missing", shadows.name, kDifferenceGain), amplified(empty, shaded)});
+    row.images.push_back({fmt::format("{}: {:g} times what is missing", shadows.name, kDifferenceGain), visibleDifference(empty, shaded)});
     const double beside = partBeside(empty, shaded, resolution, way);
     section.tables.front().rows.push_back({shadows.name, fmt::format("{:.3f}", beside)});
     if (shadows.attenuation == LightAttenuation::Exact)
@@ -198,7 +192,8 @@ void compareToOracle(const Device& device, const QualityScene& scene, std::span<
       row.push_back(fmt::format("{:.1f}", psnr));
       sums[i] += psnr;
       shown.images.push_back({cases[i].name, image});
-      shown.images.push_back({fmt::format("{}: {:g} times the difference", cases[i].name, kDifferenceGain), amplified(image, oracle)});
+      shown.images.push_back(
+          {fmt::format("{}: {:g} times the difference", cases[i].name, kDifferenceGain), visibleDifference(image, oracle)});
       if (table.rows.empty() || psnr < section.checks[i].figure)
         section.checks[i] = {.name = cases[i].name,
                              .figure = psnr,

@@ -45,6 +45,9 @@ std::string directionText(DirectionSet set, int direction);
 /// "pixel (1, 2)", for an index in reading order.
 std::string pixelText(glm::ivec2 imageSize, std::size_t pixel);
 
+/// The largest difference of two ways to the same image in floats, beside which are a few roundings for each splat or stretch.
+inline constexpr double kImageTolerance = 1e-5;
+
 /// Largest difference of two images of equal size in premultiplied RGBA. Colours of flames, which exceed 1,
 /// are compared relative to the brightest component of `b`.
 MaxError largestDifference(const Image& a, const Image& b);

@@ -19,20 +19,11 @@ namespace {
 
 constexpr double kTurntableElevation = 10.0;
 constexpr double kLargestJump = 1e-3;  ///< of the RMS error: a quarter of a code of 8 bits, which is 1 dB at 41 dB
-/// Scales differences so that those below 1/8 can be distinguished.
-constexpr float kDifferenceGain = 8.0f;
 
 std::vector<ImageFigures> figuresOf(const std::vector<Image>& images, const std::vector<Image>& oracle) {
   std::vector<ImageFigures> figures;
   for (std::size_t i = 0; i < images.size(); ++i) figures.push_back(compareToOracle(images[i], oracle[i]));
   return figures;
-}
-
-/// An opaque image of |test - reference| of the colours.
-Image visibleDifference(const Image& test, const Image& reference) {
-  Image difference = absoluteDifference(test, reference);
-  for (glm::vec4& pixel : difference.pixels) pixel = glm::vec4(kDifferenceGain * glm::vec3(pixel), 1.0f);
-  return difference;
 }
 
 Image flipErrorImage(const Image& test, const Image& reference) {

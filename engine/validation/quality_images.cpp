@@ -1,8 +1,15 @@
 #include "engine/validation/quality_images.h"
 
+#include "engine/image/metrics.h"
 #include "engine/reference/oracle.h"
 
 namespace freevoxels {
+
+Image visibleDifference(const Image& test, const Image& reference) {
+  Image difference = absoluteDifference(test, reference);
+  for (glm::vec4& pixel : difference.pixels) pixel = glm::vec4(kDifferenceGain * glm::vec3(pixel), 1.0f);
+  return difference;
+}
 
 std::vector<Image> oracleImages(const QualityScene& scene, const std::vector<Camera>& cameras, glm::ivec2 size) {
   std::vector<Image> images;

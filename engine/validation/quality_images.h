@@ -13,6 +13,12 @@ namespace freevoxels {
 /// a third of the time, and what is measured with them is below 65 dB.
 inline constexpr double kQualityTolerance = 4e-3;
 
+/// Scales differences so that those below 1/8 can be distinguished.
+inline constexpr float kDifferenceGain = 8.0f;
+
+/// An opaque image of kDifferenceGain |test - reference| of the colours.
+Image visibleDifference(const Image& test, const Image& reference);
+
 std::vector<Image> oracleImages(const QualityScene& scene, const std::vector<Camera>& cameras, glm::ivec2 size);
 
 std::vector<Image> methodImages(const StageMaker& make, const QualityScene& scene, const QualityMethod& method,

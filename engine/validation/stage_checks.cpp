@@ -30,7 +30,7 @@ constexpr double kCodeTolerance = 1.0;
 /// Codes of smaller depths along rays are finer than 32-bit floats can add up.
 constexpr double kShallowDepth = 1e-3;
 constexpr double kSumsTolerance = 1e-4;
-constexpr double kImageTolerance = 1e-5, kDistanceTolerance = 1e-5;
+constexpr double kDepthTolerance = 1e-5;
 
 /// An error in a pixel's sum is relative to that sum, but to no less than this fraction of the image's
 /// largest sum: at the rim of a single footprint a sum is (1 - r²/R²)⁴ for an r that is nearly R, of which
@@ -202,7 +202,7 @@ Check checkDistance(const Image& image, const Image& reference, const char* meth
   for (std::size_t i = 0; i < image.depth.size(); ++i)
     if (reference.pixels[i].a >= kMinAlpha)
       worst.take(relativeDifference(double(image.depth[i]), double(reference.depth[i])), [&] { return pixelText(image.size, i); });
-  return worst.atMost(kDistanceTolerance, fmt::format("resolve: distance, {}", method), "relative");
+  return worst.atMost(kDepthTolerance, fmt::format("resolve: distance, {}", method), "relative");
 }
 
 /// The difference of the codes; for depths below kShallowDepth, in codes of that.
