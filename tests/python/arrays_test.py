@@ -1,5 +1,6 @@
 """Arrays of every type, order and memory, in and out, under whatever NumPy there is."""
 
+import functools
 import pathlib
 import tempfile
 import unittest
@@ -8,7 +9,7 @@ import freevoxels
 import numpy as np
 
 KINDS = ("?", "u1", "u2", "u4", "u8", "i1", "i2", "i4", "i8", "f2", "f4", "f8")
-SHAPES = ((1, 1, 1), (3, 5, 2), (9, 8, 17), (24, 20, 16))
+SHAPES = ((1, 1, 1), (3, 5, 2), (9, 8, 17))
 
 
 def values(shape, kind="f4"):
@@ -20,11 +21,18 @@ def image_of(array, **options):
     return freevoxels.render(array, size=(40, 32), density_scale=0.01, **options)
 
 
+@functools.cache
+def image_of_floats(shape, values):
+    """Drawn once, as many arrays have the same values."""
+    return image_of(np.frombuffer(values, "f4").reshape(shape))
+
+
 class ReadingTest(unittest.TestCase):
     def expect_same(self, array, expected, what):
         volume, other = freevoxels.Volume(array), freevoxels.Volume(expected)
         self.assertEqual((volume.shape, volume.range, volume.active_voxels), (other.shape, other.range, other.active_voxels), what)
-        np.testing.assert_array_equal(image_of(volume), image_of(other), str(what))
+        floats = np.ascontiguousarray(expected, "f4")
+        np.testing.assert_array_equal(image_of(volume), image_of_floats(floats.shape, floats.tobytes()), str(what))
 
     def test_all_types_in_both_byte_orders(self):
         for shape in SHAPES:

@@ -213,7 +213,7 @@ TEST(RayMarch, AgreesWithTinySteps) {
     classification.order = order;
     const double tolerance = order == ClassificationOrder::Pre ? 3e-6 : 2e-4;  // a sixteenth of a voxel has one colour
     const ReferenceField field(volume, classification);
-    for (int i = 0; i < 40; ++i) {
+    for (int i = 0; i < 16; ++i) {
       const glm::dvec3 target = glm::dvec3(volume.dimensions) * (0.5 + 0.4 * uniform(random));
       const glm::dvec3 direction =
           glm::normalize(glm::dvec3(uniform(random), uniform(random), uniform(random)));

@@ -97,9 +97,7 @@ TEST(ReferenceCube, IsBeerLambertFromAnyDirection) {
   for (int axis = 0; axis < 3; ++axis) transform[axis][axis] = 1.0 / n;
   const Scene scene(makeVolume(glm::ivec3(n), transform, [](int, int, int) { return 1.0; }), physical(sigma));
   for (const View& view :
-       {View{0.01, 0.01, false, 60, 56}, View{35, 25, false, 60, 56}, View{200, -50, false, 57, 55},
-        View{90.01, 45, false, 60, 56}, View{0.01, 0.01, true, 39, 36}, View{35, 25, true, 60, 56},
-        View{200, -50, true, 60, 56}, View{90.01, 45, true, 42, 38}}) {
+       {View{35, 25, false, 60, 56}, View{200, -50, false, 57, 55}, View{0.01, 0.01, true, 39, 36}, View{90.01, 45, true, 42, 38}}) {
     Camera camera = framingCamera(scene.volume, view.azimuth, view.elevation, 1.0, {});
     const double radius =
         1.03 * std::sqrt(3.0) / 2.0;  // the cube's bounding sphere, with a margin, fits the image
