@@ -68,8 +68,8 @@ std::string valueText(double value, double step) {
 }
 
 /// The unit of the values of a transfer function; empty if it is not known.
-std::string valueUnit(const SceneDescription& description, const InputUnits& units) {
-  if (!units.value.empty()) return units.value;
+std::string valueUnit(const SceneDescription& description, const Volume& volume) {
+  if (!volume.valueUnit.empty()) return volume.valueUnit;
   const auto& function = description.classification.transferFunction;
   const TransferPreset* const preset = function && transferFile(*function).empty() ? presetNamed(*function) : nullptr;
   return preset != nullptr && preset->name.starts_with("ct-") ? "HU" : "";
@@ -187,10 +187,10 @@ void annotate(Image& image, const SceneDescription& description, const Scene& sc
   if (!description.method.annotate) return;
   const std::optional<Background> behind = description.output.look().background;
   const Layout layout(description.output.crop.value_or(PixelRectangle{.corner = glm::ivec2(0), .size = image.size}));
-  const InputUnits units = description.input.units();
   if (hasColorBar(description, scene))
-    drawColorBar(image, scene.classification, description.method.isProjected(), valueUnit(description, units), behind, layout);
-  if (scene.camera.orthographic) drawScaleBar(image, scene.camera.orthographicHeight / image.size.y, units.length, behind, layout);
+    drawColorBar(image, scene.classification, description.method.isProjected(), valueUnit(description, *scene.volume), behind, layout);
+  if (scene.camera.orthographic)
+    drawScaleBar(image, scene.camera.orthographicHeight / image.size.y, scene.volume->lengthUnit, behind, layout);
 }
 
 }  // namespace freevoxels

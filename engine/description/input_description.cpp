@@ -249,14 +249,4 @@ std::string remarksOf(const Volume& volume) {
   return volume.remarks.empty() ? "" : fmt::format("{}: {}", volume.source, fmt::join(volume.remarks, "; "));
 }
 
-InputUnits InputDescription::units() const {
-  try {
-    if (volume.empty() || kind() != VolumeKind::Scan) return {};
-    const ScanHeader header = readScanHeader(volume, scanRequest(kMaxNumberedVoxels));
-    return {.length = header.space != ScanSpace::File ? "mm" : "", .value = header.valueUnit};
-  } catch (const Error&) {
-    return {};  // a file that is no longer there
-  }
-}
-
 }  // namespace freevoxels

@@ -52,12 +52,6 @@ inline constexpr int kDefaultFrames = 72, kMaximumFrames = 100000;
 /// What the name of a volume names.
 enum class VolumeKind { Procedural, Baked, Scan, OpenVdb };
 
-/// The units of what a volume's file has; empty where it does not say them.
-struct InputUnits {
-  std::string length;  ///< of the world: "mm"
-  std::string value;   ///< of the scalars: "HU"
-};
-
 /// The volume, before it is read.
 struct InputDescription {
   std::string volume;  ///< an OpenVDB file, a scan (scan_file.h), a folder of DICOM files, a baked volume (.fvx) or "procedural:NAME"
@@ -92,8 +86,6 @@ struct InputDescription {
   VolumeKind kind() const;
   /// What to read of a scan.
   ScanRequest scanRequest(std::uint64_t maximumVoxels, const Progress& progress = {}) const;
-  /// Reads them from the header of a scan; those of other volumes are not known.
-  InputUnits units() const;
   /// Null where the volume is not a baked one, and where it is clipped, so that it is read into memory.
   std::shared_ptr<const fvx::FvxFile> baked() const;
 

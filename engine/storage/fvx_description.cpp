@@ -224,6 +224,8 @@ Volume readVolume(const Json& json) {
   volume.up = vectorOf<3>(json.at("up"), [](const Json& component) { return number(component, -kLargestFloat, kLargestFloat, "up"); }, "up");
   if (!(glm::length(volume.up) > std::numeric_limits<float>::min())) refuse("up");
   volume.upReason = text(json.at("up_reason"));
+  for (const auto& [key, unit] : {std::pair("length_unit", &volume.lengthUnit), {"value_unit", &volume.valueUnit}})
+    if (json.contains(key)) *unit = text(json[key]);
   volume.isSolid = json.at("level_set").get<bool>();
   readCounts(json, volume);
   const Json& classification = json.at("classification");
@@ -252,6 +254,8 @@ std::string toJson(const Description& description) {
   for (int i = 0; i < 16; ++i) json["index_to_world"].push_back(volume.indexToWorld[i / 4][i % 4]);
   json["up"] = triple(volume.up);
   json["up_reason"] = volume.upReason;
+  if (!volume.lengthUnit.empty()) json["length_unit"] = volume.lengthUnit;
+  if (!volume.valueUnit.empty()) json["value_unit"] = volume.valueUnit;
   json["level_set"] = volume.isSolid;
   json["active_voxels"] = volume.activeVoxels;
   json["nan_voxels"] = volume.nanVoxels;

@@ -328,6 +328,8 @@ Volume readScan(const fs::path& file, const ScanRequest& request) {
     volume.remarks.insert(volume.remarks.begin(), header.remarks.begin(), header.remarks.end());
     volume.up = {0.0, 0.0, 1.0};
     volume.upReason = "it is a scan";
+    if (header.space != ScanSpace::File) volume.lengthUnit = "mm";
+    volume.valueUnit = header.valueUnit;
     return volume;
   });
 }

@@ -86,6 +86,7 @@ void normaliseWorld(Volume& volume) {
     const double scale = std::pow(10.0, -std::floor(std::log10(voxel)));
     for (int column = 0; column < 4; ++column)
       volume.indexToWorld[column] = glm::dvec4(glm::dvec3(volume.indexToWorld[column]) * scale, column == 3);
+    volume.lengthUnit.clear();
     volume.warnings.push_back(
         fmt::format("voxels of {} are {:g} world units large: it is scaled by {:g}, so that the camera, the lights and the scale of "
                     "densities count in units of {:g}",
@@ -136,6 +137,8 @@ Volume outlineOf(const Volume& volume) {
                  .indexToWorld = volume.indexToWorld,
                  .up = volume.up,
                  .upReason = volume.upReason,
+                 .lengthUnit = volume.lengthUnit,
+                 .valueUnit = volume.valueUnit,
                  .isSolid = volume.isSolid,
                  .activeVoxels = volume.activeVoxels,
                  .nanVoxels = volume.nanVoxels,

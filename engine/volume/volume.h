@@ -47,6 +47,8 @@ struct Volume {
   glm::dmat4 indexToWorld{1.0};
   glm::dvec3 up{0.0, 1.0, 0.0};  ///< up direction in the world, as far as the file says
   std::string upReason;          ///< why it is not +y, as a clause: "Blender wrote the file"
+  std::string lengthUnit;        ///< of the world: "mm"; empty where the file does not say it
+  std::string valueUnit;         ///< of the scalars: "HU"; empty where the file does not say it
   bool isSolid = false;          ///< whether the scalars are densities of solids: 1 inside of a level set, or where labels are (labels.h)
   ScalarBricks scalars;  ///< finite values, or kInactiveVoxel
 
