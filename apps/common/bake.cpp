@@ -149,7 +149,7 @@ void bakeScene(const BakeRequest& request, const BakeRemarks& remarks, const Pro
   const Baker baker(request, remarks, progress);
   const std::optional<std::string> name = proceduralName(input.volume);
   const glm::u64vec3 size(input.resolution.value_or(glm::ivec3(kDefaultResolution)));
-  if (name && size.x * size.y * size.z > kMaxVoxelsInMemory)
+  if (name && !input.noData && size.x * size.y * size.z > kMaxVoxelsInMemory)
     baker.bakeProcedural(*name);
   else if (name || !baker.bakeParts())
     baker.bake(request.scene.readVolume(machineMemoryBytes() / sizeof(float), 0, progress));

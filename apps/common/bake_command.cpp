@@ -32,7 +32,7 @@ class BakeProgress {
 
 void BakeCommand::add(CLI::App& app) {
   CLI::App* command = app.add_subcommand("bake", "Classify a volume once and write a file that opens at once");
-  scene_.addFields(*command, {"volume", "resolution", "grid", "raw", "series", "time-step", "spacing", "pyramid-level"});
+  scene_.addFields(*command, {"volume", "resolution", "grid", "raw", "series", "time-step", "spacing", "pyramid-level", "no-data"});
   command->add_option("OUT.fvx", file_, "File to write")->group("Output");
   for (const char* section : {"classification", "emission"}) scene_.addSection(*command, section);
   command

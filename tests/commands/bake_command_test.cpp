@@ -40,6 +40,17 @@ TEST_F(BakeCommand, APartOfABakedVolumeIsThatOfItsVolume) {
   expectCleanRefusal("render @a.fvx @none.exr --clip-box 64,0,0,70,9,9", ExitCode::Usage, "--clip-box");
 }
 
+TEST_F(BakeCommand, VoxelsWithTheValueOfNoDataAreLeftOut) {
+  const std::string options = " --size 40x30 --quiet --float", without = " --no-data 1";
+  expectSuccess(run("generate head @head.vdb --resolution 24 --quiet"));
+  expectSuccess(run("bake @head.vdb @a.fvx --keep-scalars --quiet" + without));
+  expectSuccess(run("render @head.vdb @original.exr" + options + without));
+  expectSuccess(run("render @head.vdb @whole.exr" + options));
+  expectSuccess(run("render @a.fvx @baked.exr" + options));
+  EXPECT_EQ(largestPixelDifference(image("baked.exr"), image("original.exr")), 0.0);
+  EXPECT_GT(largestPixelDifference(image("baked.exr"), image("whole.exr")), 0.01);
+}
+
 TEST_F(BakeCommand, SixteenBitsDrawTheSameImageTo60Decibels) {
   struct Case {
     std::string volume, classification;
