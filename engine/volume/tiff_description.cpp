@@ -3,6 +3,8 @@
 #include "engine/volume/tiff_description.h"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <charconv>
 #include <cmath>
 #include <map>
@@ -70,6 +72,18 @@ std::optional<glm::vec3> lastColor(std::span<const std::byte> table) {
   glm::vec3 color;
   for (std::size_t c = 0; c < 3; ++c) color[int(c)] = linearFromSrgb(float(std::uint8_t(table[256 * c + 255])) / 255.0f);
   return color == glm::vec3(0.0f) ? std::nullopt : std::optional(color);
+}
+
+/// A display range of two doubles; none where it is no range of numbers.
+std::optional<std::array<float, 2>> windowOf(std::span<const std::byte> range, bool isBigEndian) {
+  const auto numberAt = [&](std::size_t first) {
+    const std::uint64_t low = imageJNumber(range.subspan(first + (isBigEndian ? 4 : 0)), isBigEndian);
+    const std::uint64_t high = imageJNumber(range.subspan(first + (isBigEndian ? 0 : 4)), isBigEndian);
+    return float(std::bit_cast<double>(high << 32 | low));
+  };
+  const std::array window{numberAt(0), numberAt(sizeof(double))};
+  const bool isRange = std::isfinite(window[0]) && std::isfinite(window[1]) && window[0] < window[1];
+  return isRange ? std::optional(window) : std::nullopt;
 }
 
 void takeOmeChannels(const pugi::xml_node& pixels, TiffDescription& description) {
@@ -146,27 +160,35 @@ std::optional<TiffDescription> imageJDescription(const std::filesystem::path& fi
   return description;
 }
 
-void takeImageJColors(std::span<const std::byte> metadata, std::span<const std::uint32_t> counts, TiffDescription& description) {
-  constexpr std::uint32_t kMagic = 0x494a494a, kTables = 0x6c757473;  // IJIJ, luts
-  constexpr std::size_t kEntry = 8, kTable = 3 * 256;
+void takeImageJLooks(std::span<const std::byte> metadata, std::span<const std::uint32_t> counts, TiffDescription& description) {
+  constexpr std::uint32_t kMagic = 0x494a494a, kTables = 0x6c757473, kRanges = 0x72616e67;  // IJIJ, luts, rang
+  constexpr std::size_t kEntry = 8, kTable = 3 * 256, kRange = 2 * sizeof(double);
   if (counts.empty() || counts[0] < 4 || counts[0] > metadata.size()) return;
   const bool isBigEndian = imageJNumber(metadata, true) == kMagic;
   if (!isBigEndian && imageJNumber(metadata, false) != kMagic) return;
   const std::span<const std::byte> header = metadata.first(counts[0]);
+  const auto channels = std::size_t(description.channels);
   std::vector<std::optional<glm::vec3>> colors;
+  std::vector<std::optional<std::array<float, 2>>> windows;
   std::size_t part = 1, at = counts[0];
   for (std::size_t entry = 4; entry + kEntry <= header.size(); entry += kEntry) {
     const std::uint32_t type = imageJNumber(header.subspan(entry), isBigEndian);
     for (std::uint32_t n = imageJNumber(header.subspan(entry + 4), isBigEndian); n > 0; --n, ++part) {
       if (part >= counts.size() || counts[part] > metadata.size() - at) return;
-      if (type == kTables && counts[part] == kTable) colors.push_back(lastColor(metadata.subspan(at, kTable)));
-      at += counts[part];
+      const std::span<const std::byte> bytes = metadata.subspan(at, counts[part]);
+      if (type == kTables && bytes.size() == kTable) colors.push_back(lastColor(bytes));
+      if (type == kRanges && bytes.size() == channels * kRange)
+        for (std::size_t c = 0; c < channels; ++c) windows.push_back(windowOf(bytes.subspan(c * kRange, kRange), isBigEndian));
+      at += bytes.size();
     }
   }
+  // A colour that all have is that of programs which know none.
   const bool areSame = std::ranges::all_of(colors, [&](const auto& color) { return color == colors.front(); });
-  if (colors.size() != std::size_t(description.channels) || areSame) return;  // a colour that all have is that of programs which know none
-  if (description.described.empty()) description.described.resize(colors.size());
+  if (colors.size() != channels || areSame) colors.clear();
+  if (windows.size() != channels) windows.clear();
+  if (description.described.empty() && !(colors.empty() && windows.empty())) description.described.resize(channels);
   for (std::size_t i = 0; i < colors.size(); ++i) description.described[i].color = colors[i];
+  for (std::size_t i = 0; i < windows.size(); ++i) description.described[i].window = windows[i];
 }
 
 std::optional<TiffDescription> omeDescription(const std::filesystem::path& file, const std::string& text, int components) {

@@ -31,9 +31,10 @@ struct TiffDescription {
 
 /// Nothing where the text is no such description. Fails with ErrorKind::Input where it is one and is damaged.
 std::optional<TiffDescription> imageJDescription(const std::filesystem::path& file, const std::string& text);
-/// Gives the channels the colours at the ends of the look-up tables that ImageJ has them in: `metadata` are the values of its tag of parts,
-/// and `counts` those of its tag of their lengths. Leaves the channels as they are where these are something else.
-void takeImageJColors(std::span<const std::byte> metadata, std::span<const std::uint32_t> counts, TiffDescription& description);
+/// Gives the channels the colours at the ends of the look-up tables that ImageJ has them in, and their display ranges as windows:
+/// `metadata` are the values of its tag of parts, and `counts` those of its tag of their lengths. Leaves the channels as they are where
+/// these are something else.
+void takeImageJLooks(std::span<const std::byte> metadata, std::span<const std::uint32_t> counts, TiffDescription& description);
 /// `components`: numbers of a pixel, which OME counts as channels.
 std::optional<TiffDescription> omeDescription(const std::filesystem::path& file, const std::string& text, int components);
 

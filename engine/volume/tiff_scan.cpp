@@ -2,10 +2,13 @@
 #include <tiffio.h>
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 #include <cmath>
 #include <cstdarg>
 #include <cstdio>
+#include <cstring>
+#include <limits>
 #include <memory>
 #include <system_error>
 
@@ -86,6 +89,7 @@ struct TiffPageForm {
   int components = 1;       ///< 3 or 4 of colours
   bool isPlanar = false;    ///< whether the values of each component are behind those of another
   bool isInverted = false;  ///< whether 0 is white
+  bool isPremultiplied = false;  ///< whether colours have been multiplied by the opacity that follows them
 
   std::uint64_t bytes() const { return std::uint64_t(size.x) * std::uint64_t(size.y) * bytesOfPixel(); }
   std::uint64_t bytesOfPixel() const { return bytesOf(type) * std::uint64_t(components); }
@@ -114,6 +118,29 @@ int componentsOf(const TiffFile& file, SampleType type) {
   return components;
 }
 
+/// Whether the fourth number of a pixel of the current page is an opacity by which its colour has been multiplied.
+bool hasAssociatedOpacity(const TiffFile& file) {
+  std::uint16_t count = 0;
+  const std::uint16_t* kinds = nullptr;
+  return TIFFGetField(file.get(), TIFFTAG_EXTRASAMPLES, &count, &kinds) == 1 && count == 1 && kinds[0] == EXTRASAMPLE_ASSOCALPHA;
+}
+
+/// Divides the colours of pixels by their opacity.
+template <typename Value>
+void unpremultiply(std::span<std::byte> pixels) {
+  constexpr std::size_t kComponents = 4;
+  constexpr std::uint32_t kLargest = std::numeric_limits<Value>::max();
+  std::array<Value, kComponents> pixel;
+  for (; pixels.size() >= sizeof(pixel); pixels = pixels.subspan(sizeof(pixel))) {
+    std::memcpy(pixel.data(), pixels.data(), sizeof(pixel));
+    const std::uint32_t opacity = pixel.back();
+    if (opacity == 0) continue;
+    for (std::size_t c = 0; c + 1 < kComponents; ++c)
+      pixel[c] = Value(std::min((std::uint32_t(pixel[c]) * kLargest + opacity / 2) / opacity, kLargest));
+    std::memcpy(pixels.data(), pixel.data(), sizeof(pixel));
+  }
+}
+
 /// The form of the current page. Fails for a page that is not of a scan.
 TiffPageForm formOf(const TiffFile& file) {
   const auto width = file.tag<std::uint32_t>(TIFFTAG_IMAGEWIDTH, 0), height = file.tag<std::uint32_t>(TIFFTAG_IMAGELENGTH, 0);
@@ -130,6 +157,7 @@ TiffPageForm formOf(const TiffFile& file) {
   form.isPlanar = form.components > 1 && file.tag<std::uint16_t>(TIFFTAG_PLANARCONFIG, PLANARCONFIG_CONTIG) == PLANARCONFIG_SEPARATE;
   form.isInverted = file.tag<std::uint16_t>(TIFFTAG_PHOTOMETRIC, PHOTOMETRIC_MINISBLACK) == PHOTOMETRIC_MINISWHITE &&
                     format == SAMPLEFORMAT_UINT && bits <= 16;
+  form.isPremultiplied = form.components == 4 && hasAssociatedOpacity(file);
   return form;
 }
 
@@ -233,8 +261,8 @@ class TiffScan : public ScanReader {
     if (isOneFile)
       if (auto described = imageJDescription(path_, text)) {
         description_ = *described;
-        takeImageJColors(first.list<std::byte>(kImageJMetadata, {TIFF_BYTE, TIFF_UNDEFINED}),
-                         first.list<std::uint32_t>(kImageJByteCounts, {TIFF_LONG}), description_);
+        takeImageJLooks(first.list<std::byte>(kImageJMetadata, {TIFF_BYTE, TIFF_UNDEFINED}),
+                        first.list<std::uint32_t>(kImageJByteCounts, {TIFF_LONG}), description_);
       }
     if (isOneFile)
       if (auto described = omeDescription(path_, text, form_.components)) description_ = *described;
@@ -344,6 +372,8 @@ class TiffScan : public ScanReader {
       readPlanes(file, form_, values);
     else
       readPlaneOf(file, form_, 0, values);
+    if (form_.isPremultiplied && form_.type == SampleType::U8) unpremultiply<std::uint8_t>(values);
+    if (form_.isPremultiplied && form_.type == SampleType::U16) unpremultiply<std::uint16_t>(values);
   }
 
   /// Whether the bytes of the values are in the other order.

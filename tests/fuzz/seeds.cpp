@@ -220,7 +220,7 @@ void writeStacks(const fs::path& tiff, const fs::path& text) {
   writeFile(tiff / "hyperstack.tif", test::TiffFixture{.pages = 12, .description = kHyperstack}.bytes());
   writeFile(tiff / "behind.tif", test::TiffFixture{.description = kHyperstack, .images = 12}.bytes());
   test::TiffFixture colored{.pages = 12, .description = kHyperstack};
-  colored.metadata = test::ImageJMetadata({{255, 0, 0}, {0, 255, 0}});
+  colored.metadata = test::ImageJMetadata({{255, 0, 0}, {0, 255, 0}}, false, {{0.0, 9.0}, {1.0, 2.0}});
   writeFile(tiff / "tables.tif", colored.bytes());
   for (const bool isPlanar : {false, true})
     writeFile(tiff / (isPlanar ? "planes.tif" : "photographs.tif"),

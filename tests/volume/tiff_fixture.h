@@ -2,6 +2,7 @@
 // Stacks of TIFF, written here byte by byte.
 
 #include <array>
+#include <bit>
 #include <cstdint>
 #include <cstring>
 #include <glm/glm.hpp>
@@ -17,13 +18,22 @@ struct ImageJMetadata {
   std::string bytes;
   std::vector<std::uint32_t> counts;
 
-  explicit ImageJMetadata(const std::vector<std::array<int, 3>>& colors, bool isBigEndian = false) {
+  explicit ImageJMetadata(const std::vector<std::array<int, 3>>& colors, bool isBigEndian = false,
+                          const std::vector<std::array<double, 2>>& ranges = {}) {
     const auto append = [&](std::uint32_t value) {
       for (int i = 0; i < 4; ++i) bytes += char(value >> (isBigEndian ? 24 - 8 * i : 8 * i));
     };
-    for (const std::uint32_t value : {0x494a494au, 0x696e666fu, 1u, 0x6c757473u, std::uint32_t(colors.size())}) append(value);
+    for (const std::uint32_t value :
+         {0x494a494au, 0x696e666fu, 1u, 0x72616e67u, std::uint32_t(!ranges.empty()), 0x6c757473u, std::uint32_t(colors.size())})
+      append(value);
     bytes += "notes ";
-    counts = {20, 6};
+    counts = {28, 6};
+    for (const std::array<double, 2>& range : ranges)
+      for (const double end : range) {
+        const auto bits = std::bit_cast<std::uint64_t>(end);
+        for (int i = 0; i < 8; ++i) bytes += char(bits >> (isBigEndian ? 56 - 8 * i : 8 * i));
+      }
+    if (!ranges.empty()) counts.push_back(std::uint32_t(16 * ranges.size()));
     for (const std::array<int, 3>& color : colors) {
       for (const int last : color)
         for (int i = 0; i < 256; ++i) bytes += char(i * last / 255);
@@ -45,6 +55,7 @@ struct TiffFixture {
   glm::ivec2 size{4, 3};
   bool hasBytes = false;                                  ///< whether values have 8 bits
   bool isPlanar = false;                                  ///< whether `samples` are in strips of their own
+  std::uint16_t extraSample = 0;  ///< what the fourth of 4 is: 1 an associated opacity, 2 an unassociated one, 0 unsaid
   std::optional<ImageJMetadata> metadata = std::nullopt;  ///< of the first page
 
   std::string valuesOf(int page) const {
@@ -92,7 +103,7 @@ struct TiffFixture {
       };
       constexpr std::uint16_t kByte = 1, kText = 2, kShort = 3, kLong = 4, kFraction = 5;
       const bool isDescribed = page == 0 && !description.empty();
-      append(std::uint16_t(13 + (isDescribed ? 1 : 0) + (hasMetadata ? 2 : 0)));
+      append(std::uint16_t(13 + (isDescribed ? 1 : 0) + (extraSample != 0 ? 1 : 0) + (hasMetadata ? 2 : 0)));
       entry(256, kLong, 1, std::uint32_t(size.x));
       entry(257, kLong, 1, std::uint32_t(size.y));
       entry(258, kShort, 1, hasBytes ? 8 : 16);
@@ -107,6 +118,7 @@ struct TiffFixture {
       entry(283, kFraction, 1, fraction);
       entry(284, kShort, 1, isPlanar ? 2 : 1);
       entry(296, kShort, 1, unit);
+      if (extraSample != 0) entry(338, kShort, 1, extraSample);
       if (hasMetadata) {
         entry(50838, kLong, std::uint32_t(metadata->counts.size()), counts);
         entry(50839, kByte, std::uint32_t(metadata->bytes.size()), parts);

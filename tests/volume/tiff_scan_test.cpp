@@ -1,5 +1,7 @@
 // Stacks of TIFF with channels and time.
 
+#include <limits>
+
 #include "engine/image/srgb.h"
 #include "engine/volume/scan_file.h"
 #include "tests/refusal.h"
@@ -152,30 +154,54 @@ TEST(TiffScan, ColoursOfOneFileAreOneChannelOfOme) {
   EXPECT_TRUE(readScanHeader(folder / "a.ome.tif", {}).areColors);
 }
 
-TEST(TiffScan, LookUpTablesOfImageJAreTheColoursOfChannels) {
+TEST(TiffScan, ColoursAreDividedByAnAssociatedOpacity) {
+  const TemporaryFolder folder;
+  for (const bool isPlanar : {false, true})
+    for (const std::uint16_t extra : {std::uint16_t(0), std::uint16_t(1), std::uint16_t(2)}) {
+      writeBytes(folder / "a.tif",
+                 TiffFixture{.pages = 2, .samples = 4, .photometric = 2, .isPlanar = isPlanar, .extraSample = extra}.bytes());
+      const Volume volume = readTiff(folder / "a.tif");
+      ASSERT_TRUE(volume.albedo);
+      for (int pixel = 0; pixel < 12; ++pixel)
+        for (int c = 0; c < 3; ++c) {
+          const int value = 100 + 4 * pixel + c, opacity = 100 + 4 * pixel + 3;  // of the second page
+          const double expected = extra == 1 ? double(value) / opacity : value / 65535.0;
+          EXPECT_NEAR(volume.albedo->values[std::size_t(c)].at({pixel % 4, pixel / 4, 1}), expected, 1.0 / 65535.0);
+          EXPECT_NEAR(volume.scalar(pixel % 4, pixel / 4, 1), opacity / 65535.0, 1e-6);
+        }
+    }
+}
+
+TEST(TiffScan, LookUpTablesAndDisplayRangesOfImageJAreTheLooksOfChannels) {
   const TemporaryFolder folder;
   TiffFixture stack{.pages = 12, .description = kImageJ};
   for (const bool isBigEndian : {false, true}) {
-    stack.metadata = ImageJMetadata({{255, 0, 0}, {0, 255, 255}}, isBigEndian);
+    stack.metadata = ImageJMetadata({{255, 0, 0}, {0, 255, 255}}, isBigEndian, {{100.0, 900.5}, {-3.0, 0.25}});
     writeBytes(folder / "a.tif", stack.bytes());
     const ScanHeader header = readScanHeader(folder / "a.tif", {});
     ASSERT_EQ(header.channels.size(), 2u);
     EXPECT_EQ(header.channels[0].color, glm::vec3(1.0f, 0.0f, 0.0f));
     EXPECT_EQ(header.channels[1].color, glm::vec3(0.0f, 1.0f, 1.0f));
+    EXPECT_EQ(header.channels[0].window, (std::array{100.0f, 900.5f}));
+    EXPECT_EQ(header.channels[1].window, (std::array{-3.0f, 0.25f}));
   }
   const auto expectNone = [&](const ImageJMetadata& metadata) {
     stack.metadata = metadata;
     writeBytes(folder / "a.tif", stack.bytes());
-    EXPECT_FALSE(readScanHeader(folder / "a.tif", {}).channels[0].color);
+    const ScanChannel channel = readScanHeader(folder / "a.tif", {}).channels[0];
+    EXPECT_FALSE(channel.color);
+    EXPECT_FALSE(channel.window);
   };
   expectNone(ImageJMetadata({{255, 255, 255}, {255, 255, 255}}));
   expectNone(ImageJMetadata({{255, 0, 0}}));
+  expectNone(ImageJMetadata({}, false, {{5.0, 5.0}, {0.0, std::numeric_limits<double>::quiet_NaN()}}));
+  expectNone(ImageJMetadata({}, false, {{0.0, 1.0}}));
   ImageJMetadata damaged({{255, 0, 0}, {0, 255, 255}});
-  damaged.counts[3] = 1u << 31;
+  damaged.counts.back() = 1u << 31;
   expectNone(damaged);
   damaged.counts = {5000};
   expectNone(damaged);
-  damaged.counts = {20, 6};
+  damaged.counts = {28, 6};
   damaged.bytes.replace(8, 4, "\xff\xff\xff\xff");
   expectNone(damaged);
 }
