@@ -32,7 +32,7 @@ Row loadRow(uint brick) {
     [[unroll]] for (int c = 0; c < 4; ++c) {
       const int i = 4 * q + c;
       // Voxels without data have a negative density.
-      row.extinction[i] = min(max(quad[c], 0.0) * push.densityScale, kMaximumExtinction);
+      row.extinction[i] = min(max(quad[c], 0.0) * push.densityScale, kMaxExtinction);
       row.emission[i] = kEmits ? emissions[(brick * kBrickThreads + thread) * kBrickEdge + i] : 0;
       row.holding |= uint(row.extinction[i] > 0.0 || row.emission[i] != 0) << i;
     }

@@ -25,7 +25,7 @@ FV_CONSTANT int kMaxPieces = 32;
 // Largest number of lights that are evaluated at samples, from quads of optical depths.
 FV_CONSTANT int kMaxSampleLights = 4;
 // GatherFrame::projection
-FV_CONSTANT int kMaximumIntensity = 1;
+FV_CONSTANT int kMaxIntensity = 1;
 FV_CONSTANT int kAverageIntensity = 2;
 // For classification after interpolation: the number of the transfer function's intervals of the scalar, and
 // that of the codes of scalars, which start at 1.
@@ -207,7 +207,7 @@ struct GatherFrame {
   ivec2 firstSeen, seenExtent;
   ivec2 ownCells;  // first and end of the rows of cells (gather_adaptive.glsl) whose samples are refined, relative to the first one seen
   ivec2 firstPixel, pixelExtent;  // the rectangle of pixels outside of which the image is empty
-  int projection;                 // of scalars: 0, kMaximumIntensity or kAverageIntensity
+  int projection;                 // of scalars: 0, kMaxIntensity or kAverageIntensity
   float projectionLayer;          // the transfer function's unit distance times extinctionUnit
   int raysOfPixel;                // with a holdout: along each axis, the samples of a pixel, of which alone it is made; otherwise 0
   uvec2 holdout;                  // with a holdout: device address of the distance from the eye plane at which the rays of each pixel end

@@ -4,11 +4,11 @@
 #define GATHER_PROJECTION_GLSL
 #include "gather_scalars.glsl"
 
-const float kLeastCoverage = 0.5;  // where a scalar may be the largest: within the voxels with data, and not in the fringe around them
+const float kMinCoverage = 0.5;  // where a scalar may be the largest: within the voxels with data, and not in the fringe around them
 
 const float kStepsOfVoxel = 4.0;   // at least, along a ray
 
-// What a ray projects. `largest` is used for kMaximumIntensity, `sum` and `coverage` for kAverageIntensity.
+// What a ray projects. `largest` is used for kMaxIntensity, `sum` and `coverage` for kAverageIntensity.
 struct Projected {
   float largest;   // scalar plus 1, or 0 if there is none
   float sum;       // of scalars times their coverage
@@ -20,7 +20,7 @@ struct Projected {
 Projected projectedOf(Sums sums) { return Projected(sums.color.x, sums.color.y, sums.color.z, sums.distance); }
 
 void joinProjected(inout Projected all, Projected more) {
-  if (frame.projection == kMaximumIntensity) {
+  if (frame.projection == kMaxIntensity) {
     if (more.largest > all.largest) all = more;
   } else {
     all = Projected(0.0, all.sum + more.sum, all.coverage + more.coverage, all.distance + more.distance);
@@ -28,10 +28,10 @@ void joinProjected(inout Projected all, Projected more) {
 }
 
 void project(inout Sums sums, float scalar, float coverage, float ahead, Ray ray) {
-  const bool maximum = frame.projection == kMaximumIntensity;
+  const bool maximum = frame.projection == kMaxIntensity;
   const bool isSeen = ahead >= 0.0 && (!kHoldout || ahead <= ray.reach) && (!kCube || inCube != 0);
   Projected all = projectedOf(sums);
-  if (isSeen && coverage >= (maximum ? kLeastCoverage : 0.0))
+  if (isSeen && coverage >= (maximum ? kMinCoverage : 0.0))
     joinProjected(all, Projected(scalar + 1.0, coverage * scalar, coverage, maximum ? ahead : coverage * ahead));
   sums.color = vec3(all.largest, all.sum, all.coverage);
   sums.distance = all.distance;
@@ -56,7 +56,7 @@ void addProjected(inout Sums sums, inout SliceValues last, LevelGeometry level, 
 
 // Premultiplied colour and opacity, and the distance times the opacity, of what is projected.
 vec4 colorOf(Projected all, out float distance) {
-  const bool largest = frame.projection == kMaximumIntensity;
+  const bool largest = frame.projection == kMaxIntensity;
   distance = 0.0;
   if ((largest ? all.largest : all.coverage) == 0.0) return vec4(0.0);
   vec4 integral, medium;

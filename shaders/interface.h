@@ -74,8 +74,8 @@ FV_CONSTANT float kOpaqueDepth = 32.0f;
 // The least extinction of an occupied block: a block that is mostly empty might have less than 32-bit floats
 // can represent.
 FV_CONSTANT float kMinExtinction = 1e-37f;
-// Must equal kMaximumExtinction of engine/volume/classification.h.
-FV_CONSTANT float kMaximumExtinction = 1e30f;
+// Must equal kMaxExtinction of engine/volume/classification.h.
+FV_CONSTANT float kMaxExtinction = 1e30f;
 
 // Must equal the constants of engine/scene/lighting.h.
 FV_CONSTANT float kHighlight = 0.2f;

@@ -14,7 +14,7 @@ layout(local_size_x = kShadeThreads) in;
 layout(scalar, push_constant) uniform Push { ShadePush push; };
 
 const float kMinLight = 1e-4;  // smaller light is stored as this
-const float kLargestStored = 65280.0;  // largest value of halves and of packed light
+const float kMaxStored = 65280.0;  // largest value of halves and of packed light
 
 ScatteredLight scatteredBy(Block block, float sigma, uint rank) {
   if (kAnyView) return scatteredLight(block, sigma, rank, vec3(0.0), sigma * push.meanLayer * float(block.edge));
@@ -42,13 +42,13 @@ void main() {
   if (kEmits) {
     const vec3 emission = frame.emissionUnit * unpackLight(storedEmission(rank));
     if (push.emissionApart != 0)
-      WordStore(push.extra).values[rank] = packLight(min(push.sourceScale * inside * emission, kLargestStored));
+      WordStore(push.extra).values[rank] = packLight(min(push.sourceScale * inside * emission, kMaxStored));
     else
       source += emission;
   }
   // A block without any light would count as one that has no source term.
   if (push.lightOnly != 0) source = max(source, kMinLight / push.sourceScale);
-  const vec4 stored = min(vec4(push.sourceScale * source, push.extinctionScale * sigma) * (push.lightOnly != 0 ? 1.0 : inside), kLargestStored);
+  const vec4 stored = min(vec4(push.sourceScale * source, push.extinctionScale * sigma) * (push.lightOnly != 0 ? 1.0 : inside), kMaxStored);
   PairStore(push.sources).values[rank] = uvec2(packLight(stored.rgb), packHalf2x16(vec2(stored.a, 0.0)));
   if (kLit && kAnyView)
     WordStore(push.extra).values[rank] = packSnorm4x8(vec4(towards / max(luminanceOf(source), 1e-37), 0.0));

@@ -15,7 +15,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr std::size_t kMostValues = 5;
+constexpr std::size_t kMaxValues = 5;
 constexpr const char* kMinus = "\u2212";
 
 /// A rectangle in pixels.
@@ -30,8 +30,8 @@ struct Layout {
   double line = 0.0;  ///< width of lines
 
   explicit Layout(const PixelRectangle& kept) : part{glm::dvec2(kept.corner), glm::dvec2(kept.corner + kept.size)} {
-    constexpr double kLeastEm = 10.0, kEmsAlongEdge = 36.0, kLinesAlongEm = 14.0;
-    em = std::max(double(std::min(kept.size.x, kept.size.y)) / kEmsAlongEdge, kLeastEm);
+    constexpr double kMinEm = 10.0, kEmsAlongEdge = 36.0, kLinesAlongEm = 14.0;
+    em = std::max(double(std::min(kept.size.x, kept.size.y)) / kEmsAlongEdge, kMinEm);
     gap = std::round(em);
     line = std::max(1.0, std::round(em / kLinesAlongEm));
   }
@@ -132,8 +132,8 @@ void drawColorBar(Image& image, const Classification& classification, bool hasOp
 
 /// `pixel` is the edge of a pixel in the world.
 void drawScaleBar(Image& image, double pixel, const std::string& unit, const std::optional<Background>& behind, const Layout& layout) {
-  constexpr double kMostOfWidth = 0.25;
-  const double length = roundLength(kMostOfWidth * (layout.part.high.x - layout.part.low.x) * pixel);
+  constexpr double kMaxOfWidth = 0.25;
+  const double length = roundLength(kMaxOfWidth * (layout.part.high.x - layout.part.low.x) * pixel);
   const double height = std::max(2.0, std::round(layout.em / 5.0));
   const glm::dvec2 low(layout.part.low.x + layout.gap, layout.part.high.y - layout.gap - height);
   const Area bar{low, low + glm::dvec2(length / pixel, height)};
@@ -150,11 +150,11 @@ void drawScaleBar(Image& image, double pixel, const std::string& unit, const std
 std::vector<double> roundValues(double low, double high) {
   std::vector<double> values;
   constexpr std::array kDigits{1.0, 2.0, 2.5, 5.0};
-  const double decade = std::floor(std::log10((high - low) / double(kMostValues)));
+  const double decade = std::floor(std::log10((high - low) / double(kMaxValues)));
   for (std::size_t i = 0; i < 3 * kDigits.size(); ++i) {
     const double step = kDigits[i % kDigits.size()] * std::pow(10.0, decade + double(i / kDigits.size()));
     const double first = std::ceil(low / step - 1e-9), last = std::floor(high / step + 1e-9);
-    if (last - first >= double(kMostValues)) continue;
+    if (last - first >= double(kMaxValues)) continue;
     for (double number = first; number <= last; ++number) values.push_back(number * step);
     return values;
   }

@@ -63,7 +63,7 @@ std::vector<std::size_t> choose(const std::vector<Outline>& frames) {
     if (frames[i].voxels != 0u) full.push_back(i);
   if (full.empty()) return full;
   std::set<std::size_t> chosen{*std::ranges::max_element(full, {}, [&](std::size_t i) { return frames[i].voxels.value_or(0); })};
-  const std::size_t most = std::min(full.size(), kMostFramesRead);
+  const std::size_t most = std::min(full.size(), kMaxFramesRead);
   for (std::size_t i = 0; i < most && chosen.size() < most; ++i) chosen.insert(full[most == 1 ? 0 : i * (full.size() - 1) / (most - 1)]);
   return {chosen.begin(), chosen.end()};
 }

@@ -18,10 +18,10 @@ struct FilmView {
 
 /// The camera shows what is seen of all frames: of those that are read, and of the others the boxes that the headers of the files tell. Fog
 /// or scan, scale of densities and up direction are those of the frame with most mass, the scales of temperature and emission those of
-/// the frames that are hottest and radiate most, among at most kMostFramesRead, which are read: the largest, and others at equal
+/// the frames that are hottest and radiate most, among at most kMaxFramesRead, which are read: the largest, and others at equal
 /// distances. Nothing where no frame can be drawn. `progress` may abandon it.
 std::optional<FilmView> viewOfFilm(const SceneDescription& description, std::span<const std::string> inputs, std::uint64_t maximumVoxels,
                                    const Progress& progress = {});
-inline constexpr std::size_t kMostFramesRead = 12;
+inline constexpr std::size_t kMaxFramesRead = 12;
 
 }  // namespace freevoxels

@@ -13,7 +13,7 @@ namespace {
 
 constexpr double kCapitals = 0.729;      ///< height of the capitals of the font, in ems
 constexpr double kOutline = 1.0 / 14.0;  ///< width of the outline, in ems
-constexpr double kLeastOutline = 0.8;    ///< the same in pixels
+constexpr double kMinOutline = 0.8;      ///< the same in pixels
 constexpr double kHalfPixel = 0.5;
 constexpr double kDarkStrokes = 0.3;  ///< pixels by which dark strokes are wider, which look thin where light is blended
 
@@ -86,7 +86,7 @@ double textHeight(double em) {
 }
 
 void drawText(Image& image, glm::dvec2 baseline, std::string_view text, double em, const Ink& ink) {
-  const double scale = em / Glyph::kEm, outline = std::max(kOutline * em, kLeastOutline);
+  const double scale = em / Glyph::kEm, outline = std::max(kOutline * em, kMinOutline);
   const std::vector<const Glyph*> line = glyphsOf(text);
   const double bolder = ink.fill.g < ink.outline.g ? kDarkStrokes : 0.0;
   for (const auto& [wider, color] : {std::pair(bolder + outline, ink.outline), {bolder, ink.fill}}) {

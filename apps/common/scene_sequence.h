@@ -40,7 +40,7 @@ class SceneSequence {
   std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more, std::shared_ptr<const Holdout> holdout = nullptr) const {
     return readFrame(more, keywords_, !chosenContext_, std::move(holdout));
   }
-  /// Draws the frame of a volume, with channels. The first call reads up to kMostFramesRead volumes, which decide the view. The frame drawn
+  /// Draws the frame of a volume, with channels. The first call reads up to kMaxFramesRead volumes, which decide the view. The frame drawn
   /// last stays in memory, and is not read again. Of several volumes, one that holds nothing becomes an image of the background.
   Image render(std::size_t frame, const KeywordOptions& options, const Aovs& channels, const Progress& progress);
   /// Draws all frames and writes each into the files of `patterns`, in which a run of # becomes its number; `output` are options of the

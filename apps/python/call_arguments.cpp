@@ -64,7 +64,7 @@ std::shared_ptr<const Holdout> takeHoldout(py::kwargs& keywords) {
   const py::object given = keywords["holdout"];
   if (given.is_none() || isName(given)) return nullptr;
   const ArrayView view = viewOf(given, fmt::format("{}", Parameter("holdout")));
-  if (view.dimensions() != 2 || view.elements() == 0 || std::max(view.shape[0], view.shape[1]) > kMaximumImageEdge)
+  if (view.dimensions() != 2 || view.elements() == 0 || std::max(view.shape[0], view.shape[1]) > kMaxImageEdge)
     fail(ErrorKind::Input, "{} takes depths of the shape (height, width) of the image, not {}", Parameter("holdout"), view.shapeText());
   Holdout holdout{.size = {int(view.shape[1]), int(view.shape[0])}, .depths = std::vector<float>(std::size_t(view.elements()))};
   copyFloats(view, holdout.depths.data());

@@ -146,7 +146,7 @@ void ExportPanel::drawSize(glm::ivec2 window) {
   hint("Pixels of images that are saved; another size than the window's is drawn anew", "--size");
   if (!imageSize_) return;
   ImGui::InputInt2(beginRow("Pixels"), &imageSize_->x);
-  *imageSize_ = glm::clamp(*imageSize_, 1, kMaximumImageEdge);
+  *imageSize_ = glm::clamp(*imageSize_, 1, kMaxImageEdge);
 }
 
 std::optional<std::pair<std::string, double>> ExportPanel::activity() const {

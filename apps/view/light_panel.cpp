@@ -123,16 +123,16 @@ bool drawScattering(LightingDescription& options) {
     changed |= slideOptional("Surface share", options.surface, 1.0, 0.0, 1.0);
     hint("Share of the light that surfaces reflect; the rest is scattered as in fog", "--surface-share");
   }
-  constexpr int kMostShown = 10;  // the next position of the slider is all orders
+  constexpr int kMaxShown = 10;  // the next position of the slider is all orders
   const int given = options.scattering.value_or(kAllOrders);
-  int orders = given == kAllOrders ? kMostShown + 1 : given;
-  if (ImGui::SliderInt(beginRow("Scattering"), &orders, 1, std::max(kMostShown + 1, orders),
+  int orders = given == kAllOrders ? kMaxShown + 1 : given;
+  if (ImGui::SliderInt(beginRow("Scattering"), &orders, 1, std::max(kMaxShown + 1, orders),
                        given == kAllOrders ? "all orders"
                        : given == 1        ? "single"
                                            : "%d orders",
                        ImGuiSliderFlags_AlwaysClamp)) {
     options.scattering = orders;
-    if (orders > kMostShown) options.scattering.reset();
+    if (orders > kMaxShown) options.scattering.reset();
     changed = true;
   }
   hint("Orders of scattering in fog; 1 is single scattering", "--scattering");

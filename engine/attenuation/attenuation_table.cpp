@@ -13,7 +13,7 @@ namespace freevoxels {
 
 namespace {
 
-static_assert(shader::kMaximumDepth == float(kMaximumCodedDepth));
+static_assert(shader::kMaximumDepth == float(kMaxCodedDepth));
 static_assert(shader::kOpaqueDepth == float(kOpaqueDepth));
 static_assert(shader::kCodeDepth8 == int(AttenuationCode::Depth8));
 static_assert(shader::kCodeLinear8 == int(AttenuationCode::Linear8));

@@ -94,7 +94,7 @@ void join(std::vector<BrickBox>& boxes) {
 std::vector<VoxelRange> islandsOf(const SparseGrid<std::uint8_t>& bricks, glm::ivec3 dimensions) {
   const std::vector<NodeBox> nodes = nodesOf(bricks);
   std::vector<BrickBox> boxes = connected(nodes, bricks.dimensions() / kNode, 0);
-  for (int shift = 1; boxes.size() > kMostIslands; ++shift) boxes = connected(nodes, bricks.dimensions() / kNode, shift);
+  for (int shift = 1; boxes.size() > kMaxIslands; ++shift) boxes = connected(nodes, bricks.dimensions() / kNode, shift);
   join(boxes);
   std::vector<VoxelRange> islands;
   for (const BrickBox& box : boxes)

@@ -11,10 +11,10 @@
 namespace freevoxels {
 
 /// Disjoint boxes of voxels, of whole bricks or up to `dimensions`, in which all marked bricks are: each is the smallest around marked
-/// bricks of which neighbouring nodes (SparseGrid) have some, and around others that overlap it. At most kMostIslands; where there would be
+/// bricks of which neighbouring nodes (SparseGrid) have some, and around others that overlap it. At most kMaxIslands; where there would be
 /// more, those that are near each other have one box.
 std::vector<VoxelRange> islandsOf(const SparseGrid<std::uint8_t>& bricks, glm::ivec3 dimensions);
 
-inline constexpr std::size_t kMostIslands = 1024;
+inline constexpr std::size_t kMaxIslands = 1024;
 
 }  // namespace freevoxels

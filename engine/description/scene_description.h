@@ -98,7 +98,7 @@ struct CameraDescription {
   std::optional<double> verticalFov;         ///< above 0 and below 180; else 35
   std::optional<double> orthographicHeight;  ///< above 0; makes the projection orthographic
   std::optional<glm::dvec2> orbit;  ///< azimuth and elevation of the eye around the content; else kDefaultAzimuth and -Elevation
-  glm::ivec2 size{1024, 1024};      ///< pixels, 1 to kMaximumImageEdge each
+  glm::ivec2 size{1024, 1024};      ///< pixels, 1 to kMaxImageEdge each
   std::optional<int> frames;        ///< of a turn, 1 to kMaximumFrames; else kDefaultFrames
   std::optional<std::string> holdout;  ///< an .exr of the depths of surfaces that this camera sees in front (readHoldout)
 
@@ -124,7 +124,7 @@ struct ClassificationDescription {
   std::optional<std::string> transferFunction;  ///< a file, a preset, or JSON that begins with { (transfer_source.h)
   /// Replaces the range of the transfer function; of a volume that has none, the function is then kFunctionOfWindow.
   std::optional<ValueWindow> window;
-  std::optional<double> opacity;  ///< factor of the extinction, kLeastOpacity to kMostOpacity
+  std::optional<double> opacity;  ///< factor of the extinction, kMinOpacity to kMostOpacity
   bool invert = false;            ///< turns the colours of the transfer function round
   /// A grid of vectors of an OpenVDB file: linear colours, 0 to 1; kNone for none; else that of a usual name (grid_names.h), if there is
   /// one and neither albedo nor transfer function are given.
@@ -166,7 +166,7 @@ struct ClassificationDescription {
 };
 
 inline constexpr const char* kFunctionOfWindow = "grey";
-inline constexpr double kLeastOpacity = 1e-6, kMostOpacity = 1e6;
+inline constexpr double kMinOpacity = 1e-6, kMostOpacity = 1e6;
 
 /// Emission by temperature.
 struct EmissionDescription {

@@ -96,7 +96,7 @@ void addClassification(std::vector<SceneField>& fields) {
                                                                                                                    "albedo", "albedo-grid"};
   section.add("window", &Classified::window, Codec<ValueWindow>{.form = kWindowForm, .read = readWindow, .text = windowText}).excludes = {
       "density-scale", "albedo", "albedo-grid"};
-  section.add("opacity", &Classified::opacity, numbers<double>({.form = "FACTOR", .range = {kLeastOpacity, kMostOpacity}}));
+  section.add("opacity", &Classified::opacity, numbers<double>({.form = "FACTOR", .range = {kMinOpacity, kMostOpacity}}));
   section.add("invert", &Classified::invert, truth(Kind::Flag)).excludes = {"density-scale", "albedo", "albedo-grid"};
   section.add("iso", &Classified::iso, Codec<IsoSurface>{.form = kIsoForm, .read = readIsoSurface, .text = isoSurfaceText}).excludes = {
       "transfer-function", "density-scale", "albedo", "albedo-grid", "window", "opacity", "invert"};
@@ -150,7 +150,7 @@ void addCamera(std::vector<SceneField>& fields) {
   section.add("up", &View::up, numbers<glm::dvec3>({.form = "X,Y,Z"}));
   section.add("fov", &View::verticalFov, numbers<double>({.form = "DEG"}));
   section.add("orthographic", &View::orthographicHeight, numbers<double>({.form = "HEIGHT"})).excludes = {"fov"};
-  section.add("size", &View::size, extent<glm::ivec2>("WxH", kMaximumImageEdge));
+  section.add("size", &View::size, extent<glm::ivec2>("WxH", kMaxImageEdge));
   section.add("frames", &View::frames, numbers<int>({.form = "N", .range = {1.0, double(kMaximumFrames)}, .whole = true}));
   section.add("holdout", &View::holdout, text(Kind::File, "DEPTH.exr"));
 }

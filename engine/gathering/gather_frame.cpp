@@ -12,7 +12,7 @@ namespace freevoxels {
 
 namespace {
 
-static_assert(int(IntensityProjection::Maximum) == shader::kMaximumIntensity);
+static_assert(int(IntensityProjection::Maximum) == shader::kMaxIntensity);
 static_assert(int(IntensityProjection::Average) == shader::kAverageIntensity);
 
 /// Lattice samples per voxel along an axis of the image, at the reference distance.

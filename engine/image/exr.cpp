@@ -33,7 +33,7 @@ namespace freevoxels {
 namespace {
 
 constexpr std::array<const char*, 4> kColorChannels = {"R", "G", "B", "A"};
-constexpr float kLargestHalf = 65504.0f;
+constexpr float kMaxHalf = 65504.0f;
 constexpr std::size_t kPixelsATask = 1 << 14;
 constexpr std::size_t kLongestReason = 200;  ///< of OpenEXR, bytes
 
@@ -61,9 +61,7 @@ std::vector<half> toHalf(const std::vector<glm::vec4>& pixels) {
   tbb::parallel_for(tbb::blocked_range<std::size_t>(0, pixels.size(), kPixelsATask),
                     [&](const tbb::blocked_range<std::size_t>& range) {
                       for (std::size_t i = range.begin(); i < range.end(); ++i)
-                        for (int c = 0; c < 4; ++c)
-                          halves[4 * i + std::size_t(c)] =
-                              half(std::clamp(pixels[i][c], -kLargestHalf, kLargestHalf));
+                        for (int c = 0; c < 4; ++c) halves[4 * i + std::size_t(c)] = half(std::clamp(pixels[i][c], -kMaxHalf, kMaxHalf));
                     });
   return halves;
 }

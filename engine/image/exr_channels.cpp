@@ -94,13 +94,13 @@ ExrColors findColors(const std::filesystem::path& file, const Imf::MultiPartInpu
   if (layers.empty())
     fail(ErrorKind::Input, "cannot read '{}': it has no channels R, G and B, and no Y without chroma; write it with R, G and B",
          file.string());
-  constexpr std::size_t kMostNamed = 10;
+  constexpr std::size_t kMaxNamed = 10;
   std::vector<std::string> names;
-  for (std::size_t i = 0; i < std::min(layers.size(), kMostNamed); ++i)
+  for (std::size_t i = 0; i < std::min(layers.size(), kMaxNamed); ++i)
     names.push_back(printable(layers[i].second.substr(0, layers[i].second.size() - 1)));
   fail(ErrorKind::Input,
        "cannot read '{}': it has {} layers with colours, {}{}, and none without a name: write the one to use as R, G and B", file.string(),
-       layers.size(), fmt::join(names, ", "), layers.size() > kMostNamed ? ", ..." : "");
+       layers.size(), fmt::join(names, ", "), layers.size() > kMaxNamed ? ", ..." : "");
 }
 
 ExrChannel findDepth(const std::filesystem::path& file, const Imf::MultiPartInputFile& exr) {

@@ -97,8 +97,8 @@ FixedSums readLayout(const std::filesystem::path& file, const Imf::Header& heade
     fail(ErrorKind::Input, "cannot read '{}': {}; render this share again", file.string(), what);
   };
   const Imath::Box2i window = header.dataWindow(), display = header.displayWindow();
-  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.y < 0 || display.max.x >= kMaximumImageEdge ||
-      display.max.y >= kMaximumImageEdge)
+  if (display.min.x != 0 || display.min.y != 0 || display.max.x < 0 || display.max.y < 0 || display.max.x >= kMaxImageEdge ||
+      display.max.y >= kMaxImageEdge)
     refuse("its image has an impossible size");
   FixedSums sums{.size = {display.max.x + 1, display.max.y + 1}};
   const bool hasDistance = header.channels().findChannel("distance.high") != nullptr;

@@ -35,7 +35,7 @@ struct AcesFit {
 
 constexpr AcesFit kAces;
 constexpr double kExposedTo = 0.85;  // the paper's target for the brightest and for the median pixel
-constexpr double kSmallestLuminance = 0x1p-23;
+constexpr double kMinLuminance = 0x1p-23;
 
 /// How a pixel is displayed: multiplied by a factor and tone-mapped, or as it is if there is no factor.
 struct Display {
@@ -127,9 +127,7 @@ Exposures flipExposures(const Image& reference) {
   const auto median = luminances.begin() + std::ptrdiff_t(luminances.size() / 2);
   std::ranges::nth_element(luminances, median);
 
-  const auto exposureOf = [](double luminance) {
-    return std::log2(kAces.inverse(kExposedTo) / std::max(luminance, kSmallestLuminance));
-  };
+  const auto exposureOf = [](double luminance) { return std::log2(kAces.inverse(kExposedTo) / std::max(luminance, kMinLuminance)); };
   return exposuresBetween(exposureOf(brightest), exposureOf(*median));
 }
 

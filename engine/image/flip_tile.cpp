@@ -119,15 +119,14 @@ float hyab(glm::vec3 a, glm::vec3 b) {
 }
 
 /// The largest difference that a display can show: green to blue.
-const float kLargestDifference =
-    std::pow(hyab(toHuntLab({0.0f, 1.0f, 0.0f}), toHuntLab({0.0f, 0.0f, 1.0f})), kColorExponent);
+const float kMaxDifference = std::pow(hyab(toHuntLab({0.0f, 1.0f, 0.0f}), toHuntLab({0.0f, 0.0f, 1.0f})), kColorExponent);
 
 /// 0..1: compressed, then split so that small differences get most of the range (section 4.1.3).
 float colorDifference(glm::vec3 a, glm::vec3 b) {
   const float difference = std::pow(hyab(a, b), kColorExponent);
-  const float split = kSplitShare * kLargestDifference;
+  const float split = kSplitShare * kMaxDifference;
   if (difference < split) return kSplitTarget / split * difference;
-  return kSplitTarget + (difference - split) / (kLargestDifference - split) * (1.0f - kSplitTarget);
+  return kSplitTarget + (difference - split) / (kMaxDifference - split) * (1.0f - kSplitTarget);
 }
 
 /// A tile after the model of the eye.

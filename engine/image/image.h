@@ -13,7 +13,7 @@
 namespace freevoxels {
 
 /// Pixels of an edge of an image that is drawn.
-inline constexpr int kMaximumImageEdge = 16384;
+inline constexpr int kMaxImageEdge = 16384;
 
 struct Image {
   glm::ivec2 size{0};

@@ -182,9 +182,9 @@ Image decode(const std::filesystem::path& file, std::FILE* stream) {
   if (decoder.width() * decoder.height() > kMaximumPixels)
     fail(ErrorKind::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
          file.string(), decoder.width(), decoder.height());
-  constexpr double kMostShrinking = 1100.0;  // Deflate reaches 1032
+  constexpr double kMaxShrinking = 1100.0;  // Deflate reaches 1032
   const std::uint64_t fileBytes = std::filesystem::file_size(file);
-  if (double(decoder.rowBytes()) * double(decoder.height()) > kMostShrinking * double(fileBytes))
+  if (double(decoder.rowBytes()) * double(decoder.height()) > kMaxShrinking * double(fileBytes))
     fail(ErrorKind::Input, "cannot read '{}': its header claims {}x{} pixels, which a file of {} bytes cannot hold; write it again", file.string(),
          decoder.width(), decoder.height(), fileBytes);
   if (!decoder.begin()) refuse();

@@ -13,13 +13,13 @@ namespace freevoxels {
 namespace {
 
 /// Limit of the sets of sweeps on one grid; the solution that is reached by then is used.
-constexpr int kMostSets = 60;
+constexpr int kMaxSets = 60;
 
 /// min |b - A x| of a growing Hessenberg matrix A, of which Givens rotations make a triangular one (Saad and Schultz 1986, Section 3.2).
 class LeastSquares {
  public:
-  static constexpr int kMostColumns = shader::kMaxBasis;
-  using Column = std::array<double, kMostColumns + 1>;
+  static constexpr int kMaxColumns = shader::kMaxBasis;
+  using Column = std::array<double, kMaxColumns + 1>;
 
   /// b is `norm` in its first element, and 0 in all others.
   explicit LeastSquares(double norm) : right_{norm} {}
@@ -55,9 +55,9 @@ class LeastSquares {
   }
 
  private:
-  std::array<Column, kMostColumns> columns_{};  ///< of the triangular matrix
+  std::array<Column, kMaxColumns> columns_{};   ///< of the triangular matrix
   Column right_;                                ///< b, rotated
-  std::array<double, kMostColumns> cosines_{}, sines_{};
+  std::array<double, kMaxColumns> cosines_{}, sines_{};
   int count_ = 0;
 };
 
@@ -70,7 +70,7 @@ class Gmres {
   /// the norm of the first residual.
   double solve(double reference, double tolerance) {
     double first = -1.0;
-    while (sets_ < kMostSets) {
+    while (sets_ < kMaxSets) {
       const double norm = restart();
       if (first < 0.0) first = norm;
       if (reference <= 0.0) reference = norm;
@@ -105,7 +105,7 @@ class Gmres {
   bool cycle(double norm, double enough) {
     LeastSquares squares(norm);
     last_ = norm;
-    while (squares.columns() < LeastSquares::kMostColumns && last_ > enough && sets_ < kMostSets) {
+    while (squares.columns() < LeastSquares::kMaxColumns && last_ > enough && sets_ < kMaxSets) {
       const int count = squares.columns();
       grid_.sweepDifference(kFirst + count, kFirst + count + 1, progress_);
       ++sets_;
@@ -123,7 +123,7 @@ class Gmres {
       const double length = std::sqrt(std::max(rest, 0.0));
       last_ = squares.add(column, length);
       if (length <= kBreakdown * std::sqrt(dots.back())) break;
-      if (count + 1 < LeastSquares::kMostColumns)
+      if (count + 1 < LeastSquares::kMaxColumns)
         grid_.combine({.to = kFirst + count + 1, .from = kFirst + count + 1, .first = kFirst, .factors = factors, .scale = 1.0 / length});
     }
     grid_.combine({.to = ScatteringGrid::kSolution, .from = ScatteringGrid::kSolution, .first = kFirst, .factors = squares.solve()});

@@ -17,7 +17,7 @@ using Brick = ScalarBricks::Brick;
 /// Largest number of bytes of classified voxels that are kept from one upload of their batch to the next.
 constexpr std::uint64_t kMaxKept = std::uint64_t(256) << 20;
 
-static_assert(shader::kMaximumExtinction == float(kMaximumExtinction));
+static_assert(shader::kMaxExtinction == float(kMaxExtinction));
 
 }  // namespace
 

@@ -330,7 +330,7 @@ RaySum marchRay(const ReferenceField& field, const MarchedRay& ray, double step,
 
 RaySum projectRay(const ReferenceField& field, const MarchedRay& ray, const Classification& classification,
                   IntensityProjection projection) {
-  constexpr double kLeastCoverage = 0.5;
+  constexpr double kMinCoverage = 0.5;
   double largest = -std::numeric_limits<double>::infinity(), largestAt = 0.0, sum = 0.0, coverage = 0.0, distance = 0.0;
   walkField(field, ray, ray.end, [&](const glm::vec4* corner, const glm::vec4*, glm::ivec3 cell, double enter, double leave) {
     const ClassifiedSteps steps(*field.integral(), corner, localAt(ray, cell, enter), localAt(ray, cell, leave), 1.0);
@@ -338,7 +338,7 @@ RaySum projectRay(const ReferenceField& field, const MarchedRay& ray, const Clas
     for (int i = 0; i < steps.count; ++i) {
       const glm::dvec4 value = steps.cubic.at((i + 0.5) / steps.count);
       const double scalar = value.r / value.a, t = enter + (i + 0.5) * part;
-      if (value.a >= kLeastCoverage && scalar > largest) {
+      if (value.a >= kMinCoverage && scalar > largest) {
         largest = scalar;
         largestAt = t;
       }

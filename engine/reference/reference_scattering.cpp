@@ -14,7 +14,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr int kMostIterations = 2000;
+constexpr int kMaxIterations = 2000;
 
 /// Mean radiance of a cell, and its flux.
 struct Moments {
@@ -200,7 +200,7 @@ class Transport {
 ScatteredField referenceScattering(const ScatteringMedium& medium, const Lighting& lighting, double tolerance, const Progress& progress) {
   Transport transport(medium, lighting);
   const bool all = lighting.scattering == kAllOrders;
-  const int most = all ? kMostIterations : lighting.scattering;
+  const int most = all ? kMaxIterations : lighting.scattering;
   for (int i = 0; i < most; ++i) {
     if (progress) progress("scattering", double(i) / most);
     // Of a given number of orders, the last is scattered where it is seen, and the first does not pass the medium before.

@@ -18,7 +18,7 @@ namespace freevoxels {
 namespace {
 
 /// Sine of the smallest angle between the view and `up`.
-constexpr double kSmallestUpAngle = 1e-6;
+constexpr double kMinUpAngle = 1e-6;
 
 double radians(double degrees) {
   return degrees * std::numbers::pi / 180.0;
@@ -47,7 +47,7 @@ double halfHeight(const Camera& camera) {
 /// The rotation from +y to `up` on the shortest way.
 glm::dmat3 fromYUp(glm::dvec3 up) {
   const glm::dvec3 y(0.0, 1.0, 0.0), to = glm::normalize(up);
-  if (glm::length(glm::cross(y, to)) < kSmallestUpAngle) {
+  if (glm::length(glm::cross(y, to)) < kMinUpAngle) {
     const double side = to.y < 0.0 ? -1.0 : 1.0;
     return glm::dmat3({1.0, 0.0, 0.0}, {0.0, side, 0.0}, {0.0, 0.0, side});
   }
@@ -73,7 +73,7 @@ void checkCamera(const Camera& camera) {
   const double upLength = glm::length(camera.up);
   if (!(upLength > 0.0) || !std::isfinite(upLength))
     fail(ErrorKind::Usage, "the up vector has no usable length; change {}", Parameter("up"));
-  if (glm::length(glm::cross(view / distance, camera.up / upLength)) < kSmallestUpAngle)
+  if (glm::length(glm::cross(view / distance, camera.up / upLength)) < kMinUpAngle)
     fail(ErrorKind::Usage, "the up vector points along the view; change {}", Parameter("up"));
   if (camera.orthographic) {
     if (!(camera.orthographicHeight > 0.0) || !std::isfinite(camera.orthographicHeight))
@@ -161,8 +161,7 @@ Camera framingCamera(const Subject& subject, double azimuth, double elevation, d
   camera.lookAt = glm::dvec3(0.0);
   camera.position = toEye;
   // Straight above or below, `up` does not determine the roll. Use the limit of lower elevations.
-  if (glm::length(glm::cross(glm::normalize(base.up), toEye)) < kSmallestUpAngle)
-    camera.up = orbitDirection(base.up, azimuth, elevation + 90.0);
+  if (glm::length(glm::cross(glm::normalize(base.up), toEye)) < kMinUpAngle) camera.up = orbitDirection(base.up, azimuth, elevation + 90.0);
   return framed(camera, subject, aspect);
 }
 

@@ -68,13 +68,13 @@ double stepLength(const glm::dmat4& indexToWorld, glm::dvec3 direction, bool pat
 
 int encodeOpticalDepth(AttenuationCode code, double opticalDepth) {
   if (code == AttenuationCode::Linear8) return int(std::lround(255.0 * std::exp(-opticalDepth)));
-  const double bounded = std::clamp(opticalDepth, 0.0, kMaximumCodedDepth);
-  return int(std::lround(255.0 * std::sqrt(bounded / kMaximumCodedDepth)));
+  const double bounded = std::clamp(opticalDepth, 0.0, kMaxCodedDepth);
+  return int(std::lround(255.0 * std::sqrt(bounded / kMaxCodedDepth)));
 }
 
 double decodeOpticalDepth(AttenuationCode code, int byte) {
   const double unit = byte / 255.0;
-  if (code == AttenuationCode::Depth8) return kMaximumCodedDepth * unit * unit;
+  if (code == AttenuationCode::Depth8) return kMaxCodedDepth * unit * unit;
   return byte == 0 ? kOpaqueDepth : -std::log(unit);
 }
 

@@ -52,7 +52,7 @@ enum class AttenuationCode : int {
   Linear8 = 1,  ///< round(255 * transmittance); the paper's
 };
 
-inline constexpr double kMaximumCodedDepth = 16.0;
+inline constexpr double kMaxCodedDepth = 16.0;
 /// The optical depth that Linear8 decodes from a transmittance of 0, and that depths along rays
 /// (source_rays.h) are clamped to.
 inline constexpr double kOpaqueDepth = 32.0;

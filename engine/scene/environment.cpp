@@ -13,7 +13,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr std::int64_t kMaximumMapPixels = std::int64_t(1) << 27;  // 16384 x 8192
+constexpr std::int64_t kMaxMapPixels = std::int64_t(1) << 27;  // 16384 x 8192
 constexpr int kFewestRows = 512;
 
 int partsPerPixel(const Environment& environment) {
@@ -44,7 +44,7 @@ RowSums sumRow(const Environment& environment, int row, DirectionSet set, const 
 }  // namespace
 
 Environment readEnvironment(const std::filesystem::path& file) {
-  const Image image = isHdr(file) ? readHdr(file, kMaximumMapPixels) : readExr(file, kMaximumMapPixels);
+  const Image image = isHdr(file) ? readHdr(file, kMaxMapPixels) : readExr(file, kMaxMapPixels);
   if (image.size.x != 2 * image.size.y)
     fail(ErrorKind::Input,
          "environment '{}' has {}x{} pixels, and a latitude-longitude image is twice as wide as high: choose one",

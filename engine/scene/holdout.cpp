@@ -12,9 +12,9 @@ namespace freevoxels {
 std::shared_ptr<const Holdout> readHoldout(const std::filesystem::path& file) {
   const Image image = readExrDepth(file);
   const glm::ivec2 size = image.wholeSize;
-  if (std::max(size.x, size.y) > kMaximumImageEdge)
+  if (std::max(size.x, size.y) > kMaxImageEdge)
     fail(ErrorKind::Input, "'{}' has {}x{} pixels, and images have at most {} along an edge: write a smaller one", file.string(), size.x,
-         size.y, kMaximumImageEdge);
+         size.y, kMaxImageEdge);
   const auto count = std::size_t(size.x) * std::size_t(size.y);
   auto holdout =
       std::make_shared<Holdout>(Holdout{.size = size, .depths = std::vector<float>(count, std::numeric_limits<float>::infinity())});

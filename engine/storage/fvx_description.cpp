@@ -16,7 +16,7 @@ namespace {
 using Json = nlohmann::json;
 
 constexpr std::array<const char*, kChannels> kChannelNames{"scalars", "temperature", "albedo"};
-constexpr double kLargestFloat = std::numeric_limits<float>::max(), kLargestDouble = std::numeric_limits<double>::max();
+constexpr double kMaxFloat = std::numeric_limits<float>::max(), kMaxDouble = std::numeric_limits<double>::max();
 
 template <typename Vector>
 Json triple(const Vector& v) {
@@ -50,7 +50,7 @@ double number(const Json& json, double low, double high, const char* what) {
 
 /// A number that a float holds.
 float real(const Json& json, const char* what) {
-  return float(number(json, -kLargestFloat, kLargestFloat, what));
+  return float(number(json, -kMaxFloat, kMaxFloat, what));
 }
 
 /// The numbers of a list of `value(element)`.
@@ -98,7 +98,7 @@ TransferFunction readFunction(const Json& json) {
   TransferFunction function;
   function.opacity = readPoints<1, TransferFunction::OpacityPoint>(json.at("opacity"), "the opacity of its transfer function");
   function.color = readPoints<3, TransferFunction::ColorPoint>(json.at("color"), "the colour of its transfer function");
-  function.unitDistance = number(json.at("unit_distance"), std::numeric_limits<double>::min(), kLargestFloat, "unit_distance");
+  function.unitDistance = number(json.at("unit_distance"), std::numeric_limits<double>::min(), kMaxFloat, "unit_distance");
   return function;
 }
 
@@ -120,7 +120,7 @@ Json classificationJson(const Volume& volume) {
 
 Classification readClassification(const Json& json) {
   Classification classification;
-  classification.densityScale = number(json.at("density_scale"), 0.0, kLargestDouble, "density_scale");
+  classification.densityScale = number(json.at("density_scale"), 0.0, kMaxDouble, "density_scale");
   classification.albedo =
       vectorOf<3>(json.at("albedo"), [](const Json& component) { return float(number(component, 0.0, 1.0, "albedo")); }, "albedo");
   if (json.contains("transfer_function")) {
@@ -131,9 +131,10 @@ Classification readClassification(const Json& json) {
   }
   if (json.contains("emission")) {
     const Json& emission = json["emission"];
-    classification.emission = Emission{.strength = number(emission.at("strength"), 0.0, kLargestDouble, "strength"),
-                                       .temperatureScale = number(emission.at("temperature_scale"), -kLargestDouble, kLargestDouble, "temperature_scale"),
-                                       .temperatureOffset = number(emission.at("temperature_offset"), -kLargestDouble, kLargestDouble, "temperature_offset")};
+    classification.emission =
+        Emission{.strength = number(emission.at("strength"), 0.0, kMaxDouble, "strength"),
+                 .temperatureScale = number(emission.at("temperature_scale"), -kMaxDouble, kMaxDouble, "temperature_scale"),
+                 .temperatureOffset = number(emission.at("temperature_offset"), -kMaxDouble, kMaxDouble, "temperature_offset")};
   }
   return classification;
 }
@@ -162,8 +163,8 @@ Encodings readEncodings(const Json& json) {
     if (known == std::end(kEncodingNames)) throw std::runtime_error(fmt::format("encoding '{}' is unknown", text(name)));
     if (encodings[place]) throw std::runtime_error("a channel is there twice");
     encodings[place] = Encoding{.kind = EncodingKind(known - std::begin(kEncodingNames)),
-                                .scale = number(channel.at("scale"), 0.0, kLargestDouble, "scale"),
-                                .offset = number(channel.at("offset"), -kLargestFloat, kLargestFloat, "offset")};
+                                .scale = number(channel.at("scale"), 0.0, kMaxDouble, "scale"),
+                                .offset = number(channel.at("offset"), -kMaxFloat, kMaxFloat, "offset")};
   }
   if (!encodings[0]) throw std::runtime_error("it has no scalars");
   return encodings;
@@ -175,7 +176,7 @@ void readTransform(const Json& json, Volume& volume) {
   constexpr double kFarthest = 1e12;                   // distance of the first voxel from the origin, in edges
   const auto refuseTransform = [] { throw std::runtime_error("its voxels have no extent or place, or one that is impossible"); };
   if (!json.is_array() || json.size() != 16) refuseTransform();
-  for (int i = 0; i < 16; ++i) volume.indexToWorld[i / 4][i % 4] = number(json[std::size_t(i)], -kLargestDouble, kLargestDouble, "index_to_world");
+  for (int i = 0; i < 16; ++i) volume.indexToWorld[i / 4][i % 4] = number(json[std::size_t(i)], -kMaxDouble, kMaxDouble, "index_to_world");
   const glm::dmat4& m = volume.indexToWorld;
   double lengths = 1.0, shortest = kLargest;
   for (int axis = 0; axis < 3; ++axis) {
@@ -221,7 +222,8 @@ Volume readVolume(const Json& json) {
   volume.source = text(json.at("source"));
   readBox(json, volume);
   readTransform(json.at("index_to_world"), volume);
-  volume.up = vectorOf<3>(json.at("up"), [](const Json& component) { return number(component, -kLargestFloat, kLargestFloat, "up"); }, "up");
+  volume.up = vectorOf<3>(
+      json.at("up"), [](const Json& component) { return number(component, -kMaxFloat, kMaxFloat, "up"); }, "up");
   if (!(glm::length(volume.up) > std::numeric_limits<float>::min())) refuse("up");
   volume.upReason = text(json.at("up_reason"));
   for (const auto& [key, unit] : {std::pair("length_unit", &volume.lengthUnit), {"value_unit", &volume.valueUnit}})

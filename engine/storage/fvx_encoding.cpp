@@ -15,35 +15,35 @@ namespace freevoxels::fvx {
 namespace {
 
 constexpr std::uint16_t kNoHalf = 0xffff, kNoCode = 0;
-constexpr double kLargestHalf = 65504.0, kLargestCode = 65535.0;
+constexpr double kMaxHalf = 65504.0, kMaxCode = 65535.0;
 constexpr std::uint32_t kExponent = 0x7f800000;  ///< bits of a float, all of them 1 in NaN and infinities
 /// Of a decoded value: between the numbers of floats, and not kInactiveVoxel.
-const double kLargestValue = std::nextafter(std::numeric_limits<float>::max(), 0.0f);
+const double kMaxValue = std::nextafter(std::numeric_limits<float>::max(), 0.0f);
 
 std::uint16_t halfOf(double value, double scale) {
-  return glm::packHalf1x16(float(std::clamp(value / scale, -kLargestHalf, kLargestHalf)));
+  return glm::packHalf1x16(float(std::clamp(value / scale, -kMaxHalf, kMaxHalf)));
 }
 
 std::uint16_t codeOf(double value, const Encoding& encoding) {
   if (!(encoding.scale > 0.0)) return 1;
-  return std::uint16_t(std::clamp((value - encoding.offset) / encoding.scale + 1.5, 1.0, kLargestCode));
+  return std::uint16_t(std::clamp((value - encoding.offset) / encoding.scale + 1.5, 1.0, kMaxCode));
 }
 
 /// Values beyond it become the nearest one in it.
 std::pair<double, double> rangeOf(const Encoding& encoding) {
-  if (encoding.kind == EncodingKind::Float16) return {-kLargestHalf * encoding.scale, kLargestHalf * encoding.scale};
-  if (encoding.kind == EncodingKind::Linear16) return {encoding.offset, encoding.offset + (kLargestCode - 1.0) * encoding.scale};
+  if (encoding.kind == EncodingKind::Float16) return {-kMaxHalf * encoding.scale, kMaxHalf * encoding.scale};
+  if (encoding.kind == EncodingKind::Linear16) return {encoding.offset, encoding.offset + (kMaxCode - 1.0) * encoding.scale};
   return {std::numeric_limits<float>::lowest(), std::numeric_limits<float>::max()};
 }
 
 /// Bound of how far a value within the encoding's range is from what it was before it was encoded.
 double largestError(const Encoding& encoding, double value) {
-  constexpr double kHalfError = 0x1p-10, kLeastHalf = 0x1p-24,
+  constexpr double kHalfError = 0x1p-10, kMinHalf = 0x1p-24,
                    kFloatError = 0x1p-22;  // relative error of halves, the least of them, that of floats
-  constexpr double kLeastFloat = std::numeric_limits<float>::denorm_min();
+  constexpr double kMinFloat = std::numeric_limits<float>::denorm_min();
   if (encoding.kind == EncodingKind::Float32) return 0.0;
-  if (encoding.kind == EncodingKind::Float16) return std::max({std::abs(value) * kHalfError, encoding.scale * kLeastHalf, kLeastFloat});
-  return encoding.scale + std::max(std::abs(value) * kFloatError, kLeastFloat);
+  if (encoding.kind == EncodingKind::Float16) return std::max({std::abs(value) * kHalfError, encoding.scale * kMinHalf, kMinFloat});
+  return encoding.scale + std::max(std::abs(value) * kFloatError, kMinFloat);
 }
 
 }  // namespace
@@ -82,7 +82,7 @@ Decoder::Decoder(const Encoding& encoding) {
   for (std::size_t code = 0; code < values_.size(); ++code) {
     const float half = halves ? glm::unpackHalf1x16(std::uint16_t(code)) : 0.0f;
     const double value = halves ? double(half) * encoding.scale : encoding.offset + (double(code) - 1.0) * encoding.scale;
-    values_[code] = std::isfinite(half) ? float(std::clamp(value, -kLargestValue, kLargestValue)) : std::numeric_limits<float>::quiet_NaN();
+    values_[code] = std::isfinite(half) ? float(std::clamp(value, -kMaxValue, kMaxValue)) : std::numeric_limits<float>::quiet_NaN();
   }
   values_[halves ? kNoHalf : kNoCode] = kInactiveVoxel;
 }

@@ -29,7 +29,7 @@ constexpr double kScalarTolerance = 3e-3;
 /// cell rough or smooth.
 constexpr double kRoughnessBand = 1e-3, kRoughnessRounding = 16.0 / double(1 << 23);
 /// Least tolerance for the check of adaptive sampling: that of a homogeneous volume would be no more than rounding.
-constexpr double kLeastRoughness = 1e-4;
+constexpr double kMinRoughness = 1e-4;
 /// Second difference of distances, in voxels, that is as rough as the tolerance.
 constexpr double kRoughVoxels = 2.0;
 constexpr double kRefinementTolerance = 1e-4;
@@ -104,7 +104,7 @@ Check checkEnd(GatherOutputs& device, const Camera& camera, const FrameSettings&
   return worst.atMost(tolerance, fmt::format("gather samples: E with rays that end early, {}", frame), "relative");
 }
 
-/// Adaptive sampling with the median roughness of C and E as the tolerance, or kLeastRoughness. All samples of `all` are marched.
+/// Adaptive sampling with the median roughness of C and E as the tolerance, or kMinRoughness. All samples of `all` are marched.
 void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSettings& whole, double voxelSize, const GatherStages& all,
                      const char* frame, std::vector<Check>& checks) {
   const glm::ivec2 extent = all.lattice.samples;
@@ -115,7 +115,7 @@ void checkRefinement(GatherOutputs& device, const Camera& camera, const FrameSet
   if (rough.empty()) return;
   std::ranges::nth_element(rough, rough.begin() + std::ptrdiff_t(rough.size() / 2));
   FrameSettings settings = whole;
-  settings.gather().sampleTolerance = float(std::max(rough[rough.size() / 2], kLeastRoughness));
+  settings.gather().sampleTolerance = float(std::max(rough[rough.size() / 2], kMinRoughness));
   const GatherStages adaptive = device.frame(camera, settings);
   const double tolerance = double(settings.gather().sampleTolerance), band = kRoughnessBand * tolerance + kRoughnessRounding;
   std::vector<GatherSums> expected = all.gathered;

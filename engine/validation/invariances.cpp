@@ -118,11 +118,11 @@ Check checkSlabs(const TableBytes& table, const TableBytes& ofSlabs) {
 /// Largest difference of an optical depth from that of its depth8 byte: half a code, and rounding.
 double codeWidth(int byte) {
   const double next = byte + 0.501;
-  return kMaximumCodedDepth * (next * next - double(byte) * byte) / (255.0 * 255.0);
+  return kMaxCodedDepth * (next * next - double(byte) * byte) / (255.0 * 255.0);
 }
 
 double codedDepth(int byte) {
-  return kMaximumCodedDepth * byte * byte / (255.0 * 255.0);
+  return kMaxCodedDepth * byte * byte / (255.0 * 255.0);
 }
 
 /// The depth along d, the voxel's own, and the depth along -d add up to that of the whole line, for every

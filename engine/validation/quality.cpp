@@ -18,7 +18,7 @@ namespace freevoxels {
 namespace {
 
 constexpr double kTurntableElevation = 10.0;
-constexpr double kLargestJump = 1e-3;  ///< of the RMS error: a quarter of a code of 8 bits, which is 1 dB at 41 dB
+constexpr double kMaxJump = 1e-3;  ///< of the RMS error: a quarter of a code of 8 bits, which is 1 dB at 41 dB
 
 std::vector<ImageFigures> figuresOf(const std::vector<Image>& images, const std::vector<Image>& oracle) {
   std::vector<ImageFigures> figures;
@@ -128,7 +128,7 @@ ReportSection turntableQuality(const StageMaker& make, const QualityScene& scene
   std::vector<glm::dvec2> errors = plot.series.front().points;
   for (glm::dvec2& point : errors) point.y = std::pow(10.0, -0.05 * point.y);
   section.checks.push_back(
-      largestJump(errors, kLargestJump, fmt::format("{}: RMS error from one frame to the next", plot.series.front().name)));
+      largestJump(errors, kMaxJump, fmt::format("{}: RMS error from one frame to the next", plot.series.front().name)));
   section.plots.push_back(std::move(plot));
   return section;
 }

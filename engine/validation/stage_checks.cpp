@@ -22,7 +22,7 @@ namespace freevoxels {
 namespace {
 
 /// Tolerance for a transfer function's -log(1 - alpha) in 32-bit floats, which loses up to 1 / (1 -
-/// kMaximumOpacity) = 4096 units in the last place of alpha, of 8.3 that remain.
+/// kMaxOpacity) = 4096 units in the last place of alpha, of 8.3 that remain.
 constexpr double kExtinctionTolerance = 1e-4;
 /// Half a step of 9 bits.
 constexpr double kEmissionTolerance = 2e-3;

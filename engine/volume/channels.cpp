@@ -59,8 +59,8 @@ std::size_t channelNumber(const ChannelStyle& channel, std::size_t count) {
 }
 
 bool doEmit(const std::vector<ChannelStyle>& channels) {
-  if (channels.size() > kMostChannels)
-    fail(ErrorKind::Usage, "a volume has at most {} channels, and {} are given: leave some out", kMostChannels, channels.size());
+  if (channels.size() > kMaxChannels)
+    fail(ErrorKind::Usage, "a volume has at most {} channels, and {} are given: leave some out", kMaxChannels, channels.size());
   const auto emitting = std::size_t(std::ranges::count_if(channels, &ChannelStyle::emits));
   if (emitting != 0 && emitting != channels.size())
     fail(ErrorKind::Usage, "{} has channels with and without emission: draw those with emission by {}, from the same file",

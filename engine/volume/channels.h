@@ -13,7 +13,7 @@
 namespace freevoxels {
 
 /// Channels of a volume at most.
-inline constexpr std::size_t kMostChannels = 16;
+inline constexpr std::size_t kMaxChannels = 16;
 /// The name of the albedo and radiance grids that are made of channels.
 inline constexpr const char* kChannelsName = "channels";
 
@@ -39,7 +39,7 @@ void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std:
 /// The number that the name of a channel is, where channels have numbers alone. Fails with ErrorKind::Input if it is none of `count`.
 std::size_t channelNumber(const ChannelStyle& channel, std::size_t count);
 
-/// Whether the channels emit. Fails with ErrorKind::Usage for some that do and others that do not, and for more than kMostChannels.
+/// Whether the channels emit. Fails with ErrorKind::Usage for some that do and others that do not, and for more than kMaxChannels.
 bool doEmit(const std::vector<ChannelStyle>& channels);
 
 }  // namespace freevoxels

@@ -37,7 +37,7 @@ ClassifiedVoxel classifyByTransfer(const TransferFunction& transfer, float scala
       evaluate(transfer.opacity, scalar, [](const Opacity& p) { return double(p.opacity); });
   const glm::dvec3 color =
       evaluate(transfer.color, scalar, [](const Color& p) { return glm::dvec3(p.color); });
-  return {-std::log1p(-std::min(opacity, kMaximumOpacity)) / transfer.unitDistance, color};
+  return {-std::log1p(-std::min(opacity, kMaxOpacity)) / transfer.unitDistance, color};
 }
 
 /// The sum of max(0, density) over the active voxels, in a fixed order, so that every run gives the same
@@ -101,20 +101,20 @@ ClassifiedVoxel classify(const Classification& classification, float scalar) {
                               ? classifyByTransfer(*classification.transferFunction, scalar)
                               : ClassifiedVoxel{std::max(double(scalar), 0.0) * classification.densityScale,
                                                 glm::dvec3(classification.albedo)};
-  voxel.extinction = std::min(voxel.extinction, kMaximumExtinction);
+  voxel.extinction = std::min(voxel.extinction, kMaxExtinction);
   return voxel;
 }
 
 glm::dvec3 emittedLight(const Emission& emission, float temperature) {
   if (temperature == kInactiveVoxel) return glm::dvec3(0.0);
   const double kelvin = emission.temperatureScale * double(temperature) + emission.temperatureOffset;
-  return glm::min(emission.strength * blackbodyColor(kelvin), glm::dvec3(kMaximumExtinction));
+  return glm::min(emission.strength * blackbodyColor(kelvin), glm::dvec3(kMaxExtinction));
 }
 
 glm::dvec3 emittedLight(const Emission& emission, const Volume& volume, glm::ivec3 voxel, float value) {
   if (!volume.temperature->isRadiance) return emittedLight(emission, value);
   if (value == kInactiveVoxel) return glm::dvec3(0.0);
-  return glm::min(emission.strength * double(value) * glm::dvec3(albedoOf({}, *volume.albedo, voxel)), glm::dvec3(kMaximumExtinction));
+  return glm::min(emission.strength * double(value) * glm::dvec3(albedoOf({}, *volume.albedo, voxel)), glm::dvec3(kMaxExtinction));
 }
 
 double brightestLight(const Emission& emission, const TemperatureGrid& grid, float value) {
@@ -138,8 +138,8 @@ bool areKelvin(const TemperatureGrid& grid) {
 }
 
 bool areBelowZero(const TemperatureGrid& grid) {
-  constexpr float kLeastPart = 0.05f;  // of the largest, below which noise may be
-  return !areKelvin(grid) && grid.minimum < -kLeastPart * grid.maximum;
+  constexpr float kMinPart = 0.05f;  // of the largest, below which noise may be
+  return !areKelvin(grid) && grid.minimum < -kMinPart * grid.maximum;
 }
 
 double automaticTemperatureOffset(const TemperatureGrid& grid) {

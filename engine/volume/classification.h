@@ -14,10 +14,10 @@
 namespace freevoxels {
 
 /// Upper bound of opacity, so that extinction stays finite.
-inline constexpr double kMaximumOpacity = 1.0 - 1.0 / 4096.0;
+inline constexpr double kMaxOpacity = 1.0 - 1.0 / 4096.0;
 
 /// Upper bound of extinction, so that products and sums stay finite in 32-bit floats.
-inline constexpr double kMaximumExtinction = 1e30;
+inline constexpr double kMaxExtinction = 1e30;
 
 /// A function that is piecewise linear in the scalar and constant beyond its first and last point.
 /// apps/manual/classification.md has the JSON schema.
@@ -67,7 +67,7 @@ struct ClassifiedVoxel {
 /// extinction 0. A negative scalar is a density of 0, or data for a transfer function.
 ClassifiedVoxel classify(const Classification& classification, float scalar);
 
-/// The emitted light per world unit of a black body, linear Rec.709, at most kMaximumExtinction; 0 for kInactiveVoxel and
+/// The emitted light per world unit of a black body, linear Rec.709, at most kMaxExtinction; 0 for kInactiveVoxel and
 /// below kColdestLight.
 glm::dvec3 emittedLight(const Emission& emission, float temperature);
 /// The same of a voxel of a volume with temperatures, or with TemperatureGrid::isRadiance: strength x value x albedo.

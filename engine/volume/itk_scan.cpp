@@ -222,13 +222,13 @@ class ItkScan : public ScanReader {
   /// A fourth axis is time; of others there must be one step.
   void takeTimeSteps() {
     constexpr unsigned kTime = 3;
-    constexpr itk::SizeValueType kMostSteps = 1 << 20;
+    constexpr itk::SizeValueType kMaxSteps = 1 << 20;
     for (unsigned axis = kTime; axis < io_->GetNumberOfDimensions(); ++axis) {
       const itk::SizeValueType steps = io_->GetDimensions(axis);
       if (axis > kTime && steps != 1)
         fail(ErrorKind::Input, "'{}' has {} dimensions, and scans have three, or four with time: take a part of it", path_.string(),
              io_->GetNumberOfDimensions());
-      if (steps < 1 || steps > kMostSteps) failDamaged(path_, fmt::format("its header says {} time steps", steps));
+      if (steps < 1 || steps > kMaxSteps) failDamaged(path_, fmt::format("its header says {} time steps", steps));
       if (axis == kTime) header_.timeSteps = int(steps);
     }
   }

@@ -22,7 +22,7 @@ glm::vec3 colorOfHue(float hue, float saturation, float value) {
 
 /// The density of a voxel with an opacity, relative to that of kSolidOpticalDepth.
 float densityOf(float opacity) {
-  const double depth = -std::log1p(-std::min(double(opacity), kMaximumOpacity));
+  const double depth = -std::log1p(-std::min(double(opacity), kMaxOpacity));
   return float(std::min(depth / kSolidOpticalDepth, 1.0));
 }
 

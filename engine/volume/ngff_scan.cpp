@@ -267,7 +267,7 @@ class NgffScan : public ScanReader {
     constexpr double kFinest = 1.5;  // voxels a pixel
     checkLevelAndBox(request);
     const int count = int(header_.levels.size());
-    const double sums = header_.channels.empty() ? 1.0 : double(std::min(header_.channels.size(), kMostChannels)) + 4.0;
+    const double sums = header_.channels.empty() ? 1.0 : double(std::min(header_.channels.size(), kMaxChannels)) + 4.0;
     const auto isTooFine = [&](int level) {
       const VoxelBox box = boxOf(request, level);
       const glm::ivec3 size = box.last - box.first + 1;

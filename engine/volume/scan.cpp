@@ -162,11 +162,11 @@ double medianWithout(const Volume& volume, float without) {
 
 /// Whether the active voxels have few different values beside `without`, as labels have.
 bool areLabels(const Volume& volume, float without) {
-  constexpr std::size_t kMostLabels = 32;
+  constexpr std::size_t kMaxLabels = 32;
   std::set<float> found;
   for (const ScalarBricks::Brick& brick : volume.scalars.bricks())
     for (const float value : brick)
-      if (value != kInactiveVoxel && value != without && found.insert(value).second && found.size() > kMostLabels) return false;
+      if (value != kInactiveVoxel && value != without && found.insert(value).second && found.size() > kMaxLabels) return false;
   return true;
 }
 
@@ -230,21 +230,21 @@ bool looksLikeScan(const Volume& volume) {
 }
 
 std::optional<float> paddingOf(const Volume& volume) {
-  constexpr double kLeastOnSides = 0.1, kLeastOthers = 0.05, kLeastGap = 0.3, kLeastGapToHalf = 0.5;
-  constexpr double kLeastPart = 0.2;  // of the range, which the half of the values may be narrower than
+  constexpr double kMinOnSides = 0.1, kMinOthers = 0.05, kMinGap = 0.3, kMinGapToHalf = 0.5;
+  constexpr double kMinPart = 0.2;  // of the range, which the half of the values may be narrower than
   if (!looksLikeScan(volume)) return std::nullopt;
   const std::vector<float> sides = valuesOnSides(volume);
   for (const float value : {volume.minimum, volume.maximum}) {
     const double share = double(std::ranges::count(sides, value)) / double(sides.size());
-    if (value == 0.0f || share < kLeastOnSides) continue;
+    if (value == 0.0f || share < kMinOnSides) continue;
     const auto [least, most] = rangeWithout(volume, value);
     const double width = double(most) - double(least);
     const double gap = value < least ? double(least) - double(value) : double(value) - double(most);
     if (!(width > 0.0) || !(gap > 0.0)) continue;
     // Few values far away, such as those of metal, do not bring the padding nearer.
     const double median = medianWithout(volume, value), half = value < least ? median - least : most - median;
-    const bool isFar = gap > kLeastGap * width || gap > kLeastGapToHalf * std::max(half, kLeastPart * width);
-    if ((gap > width || (share <= 1.0 - kLeastOthers && isFar)) && !areLabels(volume, value)) return value;
+    const bool isFar = gap > kMinGap * width || gap > kMinGapToHalf * std::max(half, kMinPart * width);
+    if ((gap > width || (share <= 1.0 - kMinOthers && isFar)) && !areLabels(volume, value)) return value;
   }
   return std::nullopt;
 }
@@ -265,10 +265,10 @@ void settleNoData(Volume& volume, const std::optional<NoData>& noData) {
 }
 
 bool looksLikeFog(const Volume& volume) {
-  constexpr double kLargestDensity = 10.0, kLeastEmpty = 0.9;
-  if (volume.minimum != 0.0f || !(volume.maximum > 0.0f) || double(volume.maximum) > kLargestDensity) return false;
+  constexpr double kMaxDensity = 10.0, kMinEmpty = 0.9;
+  if (volume.minimum != 0.0f || !(volume.maximum > 0.0f) || double(volume.maximum) > kMaxDensity) return false;
   const std::vector<float> sides = valuesOnSides(volume);
-  if (double(std::ranges::count(sides, 0.0f)) < kLeastEmpty * double(sides.size())) return false;
+  if (double(std::ranges::count(sides, 0.0f)) < kMinEmpty * double(sides.size())) return false;
   return std::ranges::any_of(volume.scalars.bricks(), [](const ScalarBricks::Brick& brick) {
     return std::ranges::any_of(brick, [](float value) { return value != kInactiveVoxel && value != std::floor(value); });
   });

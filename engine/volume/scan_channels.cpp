@@ -84,7 +84,7 @@ ChosenChannels chosenChannels(const fs::path& file, ScanHeader& header, const Sc
     fail(ErrorKind::Usage, "'{}' has channels, and labels are of one: choose it with {}: {}", file.string(), Parameter("grid", "NAME"),
          channelList(header));
   const bool showsSome = std::ranges::any_of(header.channels, &ScanChannel::isShown);
-  for (std::size_t i = 0; i < header.channels.size() && chosen.numbers.size() < kMostChannels; ++i)
+  for (std::size_t i = 0; i < header.channels.size() && chosen.numbers.size() < kMaxChannels; ++i)
     if (header.channels[i].isShown || !showsSome)
       add({.name = nameOfChannel(header, i)}, int(i));
   header.remarks.push_back(fmt::format("{} of its {} channels are drawn ({} chooses others, {} draws one as a scan)", chosen.numbers.size(),
@@ -94,7 +94,7 @@ ChosenChannels chosenChannels(const fs::path& file, ScanHeader& header, const Sc
 
 std::optional<std::array<float, 2>> windowAboveBackground(const ScalarBricks& values) {
   constexpr int kBins = 4096;
-  constexpr double kTail = 0.001, kMostAbove = 0.5;  // parts of the voxels
+  constexpr double kTail = 0.001, kMaxAbove = 0.5;  // parts of the voxels
   Volume channel{.dimensions = values.dimensions(), .scalars = values};
   summariseValues(channel);
   if (!(channel.minimum < channel.maximum)) return std::nullopt;
@@ -102,7 +102,7 @@ std::optional<std::array<float, 2>> windowAboveBackground(const ScalarBricks& va
   const auto binBelow = [&](double part) { return int(histogram.binOfRank(part * double(channel.activeVoxels))); };
   const int mode = int(std::ranges::max_element(histogram.counts) - histogram.counts.begin());
   const int begin = 2 * mode - std::min(binBelow(kTail), mode) + 1, end = binBelow(1.0 - kTail) + 1;
-  if (begin >= end || binBelow(1.0 - kMostAbove) >= begin) return std::nullopt;
+  if (begin >= end || binBelow(1.0 - kMaxAbove) >= begin) return std::nullopt;
   const auto valueAt = [&](int bin) { return std::lerp(channel.minimum, channel.maximum, float(bin) / float(kBins)); };
   return std::array{valueAt(begin), valueAt(end)};
 }

@@ -274,8 +274,8 @@ void checkEdges(const fs::path& file, const glm::i64vec3& dimensions) {
 }
 
 void checkPayload(const fs::path& file, std::uint64_t bytes, std::uint64_t fileBytes, bool isCompressed) {
-  constexpr std::uint64_t kLargestRatio = 1032;  // of zlib
-  if (bytes <= fileBytes || (isCompressed && bytes / kLargestRatio <= fileBytes)) return;
+  constexpr std::uint64_t kMaxRatio = 1032;  // of zlib
+  if (bytes <= fileBytes || (isCompressed && bytes / kMaxRatio <= fileBytes)) return;
   failDamaged(file, fmt::format("its header says {} bytes of values, and the file has {}", bytes, fileBytes));
 }
 

@@ -26,7 +26,7 @@ class MediumTable {
   }
   double extinctionAt(float scalar) const {
     if (scalar == kInactiveVoxel) return 0.0;
-    return values_.empty() ? std::min(std::max(double(scalar), 0.0) * scale_, kMaximumExtinction) : entry(scalar).extinction;
+    return values_.empty() ? std::min(std::max(double(scalar), 0.0) * scale_, kMaxExtinction) : entry(scalar).extinction;
   }
   glm::dvec3 colorAt(float scalar) const { return values_.empty() ? albedo_ : entry(scalar).color; }
 
@@ -140,9 +140,9 @@ ScatteringMedium::ScatteringMedium(std::span<const PlacedMedium> volumes) : Scat
   for (const PlacedMedium& placed : volumes) addPlaced(placed);
 }
 
-/// Averages the voxels at points of each direct cell, at most a voxel apart where kMostPoints allows.
+/// Averages the voxels at points of each direct cell, at most a voxel apart where kMaxPoints allows.
 void ScatteringMedium::addPlaced(const PlacedMedium& placed) {
-  constexpr int kMostPoints = 4;  // along the edge of a direct cell
+  constexpr int kMaxPoints = 4;  // along the edge of a direct cell
   const Volume& volume = *placed.volume;
   const Classification& classification = *placed.classification;
   const MediumTable table(volume, classification);
@@ -150,7 +150,7 @@ void ScatteringMedium::addPlaced(const PlacedMedium& placed) {
   const bool emits = classification.emission && volume.temperature;
   const glm::dmat4 toVolume = glm::inverse(volume.indexToWorld) * indexToWorld_;
   const double cellEdge = directGrid_.edge * glm::length(glm::dvec3(indexToWorld_[0]));
-  const int points = std::clamp(int(std::ceil(cellEdge / volume.voxelSize())), 1, kMostPoints), ratio = grid_.edge / directGrid_.edge;
+  const int points = std::clamp(int(std::ceil(cellEdge / volume.voxelSize())), 1, kMaxPoints), ratio = grid_.edge / directGrid_.edge;
   const double directShare = 1.0 / (double(points) * points * points), share = directShare / (double(ratio) * ratio * ratio);
   const auto addPoint = [&](glm::ivec3 voxel, Cell& cell, double& direct) {
     if (emits) cell.emission += share * emittedLight(*classification.emission, volume, voxel, volume.temperature->values.at(voxel));

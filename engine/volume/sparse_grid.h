@@ -22,9 +22,9 @@ class SparseGrid {
   SparseGrid() = default;
   /// Each cell has the value `empty`.
   explicit SparseGrid(glm::ivec3 dimensions, Value empty = {}) : dimensions_(dimensions), empty_(empty) {
-    constexpr double kMostEntries = 1 << 20;
+    constexpr double kMaxEntries = 1 << 20;
     tableSize_ = nodeOf(dimensions + (kNodeEdge - 1));
-    const bool isSmall = double(tableSize_.x) * double(tableSize_.y) * double(tableSize_.z) <= kMostEntries;
+    const bool isSmall = double(tableSize_.x) * double(tableSize_.y) * double(tableSize_.z) <= kMaxEntries;
     if (isSmall) table_.resize(std::size_t(tableSize_.x) * std::size_t(tableSize_.y) * std::size_t(tableSize_.z), kNone);
   }
 

@@ -20,7 +20,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr int kMostOfAxis = 1 << 20;
+constexpr int kMaxOfAxis = 1 << 20;
 constexpr std::uint64_t kMostPlanes = std::uint64_t(1) << 24;
 
 /// The number that a text is; nothing for other texts.
@@ -39,8 +39,7 @@ std::optional<double> distanceIn(std::string_view text) {
 int countIn(const std::filesystem::path& file, std::string_view text, std::string_view name) {
   if (text.empty()) return 1;
   const std::optional<int> count = numberIn<int>(text);
-  if (!count || *count < 1 || *count > kMostOfAxis)
-    failDamaged(file, fmt::format("its description says {} '{}'", name, text.substr(0, 40)));
+  if (!count || *count < 1 || *count > kMaxOfAxis) failDamaged(file, fmt::format("its description says {} '{}'", name, text.substr(0, 40)));
   return *count;
 }
 

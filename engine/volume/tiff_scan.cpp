@@ -22,7 +22,7 @@ namespace {
 
 namespace tiff_fs = std::filesystem;
 
-constexpr std::uint64_t kLargestPart = std::uint64_t(1) << 31;  ///< bytes that libtiff may allocate at once
+constexpr std::uint64_t kMaxPart = std::uint64_t(1) << 31;  ///< bytes that libtiff may allocate at once
 
 constexpr std::uint32_t kImageJByteCounts = 50838, kImageJMetadata = 50839;  ///< tags
 
@@ -31,7 +31,7 @@ class TiffFile {
  public:
   explicit TiffFile(const tiff_fs::path& file) : path_(file) {
     const std::unique_ptr<TIFFOpenOptions, void (*)(TIFFOpenOptions*)> options(TIFFOpenOptionsAlloc(), &TIFFOpenOptionsFree);
-    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t(kLargestPart));
+    TIFFOpenOptionsSetMaxSingleMemAlloc(options.get(), tmsize_t(kMaxPart));
     TIFFOpenOptionsSetErrorHandlerExtR(options.get(), &TiffFile::keep, this);
     TIFFOpenOptionsSetWarningHandlerExtR(options.get(), &TiffFile::ignore, nullptr);
     tiff_.reset(TIFFOpenExt(file.c_str(), "rm", options.get()));
@@ -166,7 +166,7 @@ void readTiles(const TiffFile& file, const TiffPageForm& form, int plane, std::s
   const glm::ivec2 tile(file.tag<std::uint32_t>(TIFFTAG_TILEWIDTH, 0), file.tag<std::uint32_t>(TIFFTAG_TILELENGTH, 0));
   const tmsize_t bytes = TIFFTileSize(file.get()), row = TIFFTileRowSize(file.get());
   const std::uint64_t pixel = form.bytesOfPixel();
-  if (tile.x < 1 || tile.y < 1 || bytes < 1 || std::uint64_t(bytes) > kLargestPart || std::uint64_t(row) < std::uint64_t(tile.x) * pixel ||
+  if (tile.x < 1 || tile.y < 1 || bytes < 1 || std::uint64_t(bytes) > kMaxPart || std::uint64_t(row) < std::uint64_t(tile.x) * pixel ||
       std::uint64_t(bytes) / std::uint64_t(row) < std::uint64_t(tile.y))
     failDamaged(file.path(), "its tiles are too large");
   std::vector<std::byte> buffer(static_cast<std::size_t>(bytes));
@@ -311,11 +311,11 @@ class TiffScan : public ScanReader {
  private:
   /// Where the pages are in the file, and whether they are all that the description says.
   void listPages(const TiffFile& file) {
-    constexpr std::size_t kMostPages = std::size_t(1) << 24;
+    constexpr std::size_t kMaxPages = std::size_t(1) << 24;
     if (files_.size() > 1) return;
     do {
       if ((file.tag<std::uint32_t>(TIFFTAG_SUBFILETYPE, 0) & (FILETYPE_REDUCEDIMAGE | FILETYPE_MASK)) != 0) continue;
-      if (pages_.size() >= kMostPages) failDamaged(path_, "it has too many pages");
+      if (pages_.size() >= kMaxPages) failDamaged(path_, "it has too many pages");
       pages_.push_back(TIFFCurrentDirOffset(file.get()));
     } while (TIFFReadDirectory(file.get()) == 1);
     file.check();

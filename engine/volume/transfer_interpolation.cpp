@@ -16,8 +16,8 @@ using std::numbers::pi;
 constexpr glm::dvec3 kWhitePoint(0.9505, 1.0, 1.089);  // of D65
 constexpr double kPlaceOfJump = 1e-6;                   // between its two sides, of the whole range
 constexpr double kTolerance = 1e-3;                     // of the values between points
-constexpr int kFewestHalvings = 2, kMostHalvings = 8;
-constexpr double kLargestScalar = 1e30;
+constexpr int kFewestHalvings = 2, kMaxHalvings = 8;
+constexpr double kMaxScalar = 1e30;
 
 double linearOf(double srgb) {
   return srgb <= 0.04045 ? srgb / 12.92 : std::pow((srgb + 0.055) / 1.055, 2.4);
@@ -91,12 +91,12 @@ double hueTowards(const Msh& saturated, double m) {
 }
 
 glm::dvec3 divergingColor(glm::dvec3 firstColor, glm::dvec3 secondColor, double place) {
-  constexpr double kGrey = 0.05, kFarHues = 0.33 * pi, kLeastWhite = 88.0;
+  constexpr double kGrey = 0.05, kFarHues = 0.33 * pi, kMinWhite = 88.0;
   Msh first = mshOf(labOf(firstColor)), second = mshOf(labOf(secondColor));
   double between = std::fmod(std::abs(first.h - second.h), 2.0 * pi);
   if (between > pi) between = 2.0 * pi - between;
   if (first.s > kGrey && second.s > kGrey && between > kFarHues) {  // white is in the middle
-    const Msh white{std::max({first.m, second.m, kLeastWhite}), 0.0, 0.0};
+    const Msh white{std::max({first.m, second.m, kMinWhite}), 0.0, 0.0};
     (place < 0.5 ? second : first) = white;
     place = place < 0.5 ? 2.0 * place : 2.0 * place - 1.0;
   }
@@ -140,7 +140,7 @@ void addPlaces(Placed<Value>& points, const Way<Value>& way, double low, double 
   bool isLine = halvings >= way.fewest;
   for (const double part : {0.25, 0.5, 0.75})
     isLine = isLine && largestOf(way.at(std::lerp(low, high, part)) - (first * (1.0 - part) + last * part)) <= kTolerance;
-  if (isLine || halvings == kMostHalvings) {
+  if (isLine || halvings == kMaxHalvings) {
     points.emplace_back(std::lerp(way.first, way.last, high), last);
     return;
   }
@@ -270,10 +270,11 @@ Placed<glm::dvec3> colorPlaces(const std::vector<FileColor>& points, const Value
 /// Sorts the points and brings their numbers into their ranges.
 template <typename Point, typename Limit>
 void tidy(const std::string& name, std::vector<Point>& points, const Limit& limit) {
-  if (points.size() > kMostFilePoints)
-    fail(ErrorKind::Input, "transfer function '{}' has {} points, which are more than {}; thin it out", name, points.size(), kMostFilePoints);
+  if (points.size() > kMaxFilePoints)
+    fail(ErrorKind::Input, "transfer function '{}' has {} points, which are more than {}; thin it out", name, points.size(),
+         kMaxFilePoints);
   for (Point& point : points) {
-    const bool isFinite = std::abs(point.scalar) <= kLargestScalar && std::isfinite(point.midpoint) && std::isfinite(point.sharpness);
+    const bool isFinite = std::abs(point.scalar) <= kMaxScalar && std::isfinite(point.midpoint) && std::isfinite(point.sharpness);
     if (!isFinite || !limit(point))
       fail(ErrorKind::Input, "transfer function '{}' has a point of which a number is missing or not finite; correct that", name);
     point.midpoint = std::clamp(point.midpoint, 1e-5, 1.0 - 1e-5);
@@ -284,7 +285,7 @@ void tidy(const std::string& name, std::vector<Point>& points, const Limit& limi
 
 /// From the first to the last point.
 ValueWindow windowOfPoints(const FileFunction& function) {
-  ValueWindow window{kLargestScalar, -kLargestScalar};
+  ValueWindow window{kMaxScalar, -kMaxScalar};
   const auto include = [&](const auto& points) {
     if (points.empty()) return;
     window = {std::min(window.low, points.front().scalar), std::max(window.high, points.back().scalar)};

@@ -44,7 +44,7 @@ struct FileFunction {
 };
 
 /// The most points that a file may have.
-inline constexpr std::size_t kMostFilePoints = 1 << 16;
+inline constexpr std::size_t kMaxFilePoints = 1 << 16;
 
 /// Our curves of it, which differ by at most 1/500 of the full range of opacities and linear colours. Points are sorted by their scalars; of
 /// several with the same scalar the first and the last are the two sides of a jump. Values beyond 0..1 are limited. Fails with

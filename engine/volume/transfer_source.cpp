@@ -20,7 +20,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::uintmax_t kLargestFile = std::uintmax_t(1) << 24;
+constexpr std::uintmax_t kMaxFile = std::uintmax_t(1) << 24;
 constexpr const char* kKind = "transfer function";
 
 /// Whether there is something to read: folders may have the names of presets.
@@ -41,7 +41,7 @@ std::optional<std::pair<std::string, std::string>> fileAndName(const std::string
 TransferCurves readFile(const fs::path& file, const std::string& wanted) {
   checkInputFile(kKind, file);
   std::error_code error;
-  if (const std::uintmax_t size = fs::file_size(file, error); !error && size > kLargestFile)
+  if (const std::uintmax_t size = fs::file_size(file, error); !error && size > kMaxFile)
     fail(ErrorKind::Input, "'{}' has {} MiB, and no transfer function has; name another file", file.string(), size >> 20);
   std::ifstream stream(file, std::ios::binary);
   if (!stream) fail(ErrorKind::Input, "cannot open {} '{}'; check its permissions", kKind, file.string());

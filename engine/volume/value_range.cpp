@@ -75,7 +75,7 @@ Outliers outliersOf(const ValueSummary& summary) {
   constexpr std::uint64_t kVoxelsPerOutlier = 1000;
   std::uint64_t above = summary.active - summary.counts[0];
   if (above < kFewestVoxels) return {};
-  const std::uint64_t most = std::min(kMostOutliers, std::max<std::uint64_t>(above / kVoxelsPerOutlier, 1));
+  const std::uint64_t most = std::min(kMaxOutliers, std::max<std::uint64_t>(above / kVoxelsPerOutlier, 1));
   std::size_t last = 0;  // the last magnitude that has values; 0 before the first
   for (std::size_t i = 1; i < ValueSummary::kMagnitudes; ++i) {
     if (summary.counts[i] == 0) continue;

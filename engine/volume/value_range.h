@@ -27,13 +27,13 @@ struct ValueSummary {
 /// Sums up the active voxels. Those that are NaN or infinite, or have the value of no data, become voxels without data.
 ValueSummary summarise(std::span<ScalarBricks::Brick> bricks, std::optional<float> noData = {});
 
-/// Values that stray from all others: at most a thousandth of the voxels and kMostOutliers, with absolute values more than 1024 times
+/// Values that stray from all others: at most a thousandth of the voxels and kMaxOutliers, with absolute values more than 1024 times
 /// as large as the largest of the rest.
 struct Outliers {
   std::uint64_t voxels = 0;
   float limit = std::numeric_limits<float>::infinity();  ///< the largest absolute value of the rest
 };
-inline constexpr std::uint64_t kMostOutliers = 100;
+inline constexpr std::uint64_t kMaxOutliers = 100;
 Outliers outliersOf(const ValueSummary& summary);
 
 /// Limits the absolute values of active voxels.

@@ -11,12 +11,12 @@ namespace {
 /// Whether the values are on both sides of 0, up to the background, and no farther.
 template <typename Grid>
 bool areDistances(const Grid& grid) {
-  constexpr double kRounding = 1e-3, kLeastOfBand = 0.5;
+  constexpr double kRounding = 1e-3, kMinOfBand = 0.5;
   const double band = grid.background();
   if (!(band > 0.0) || grid.empty()) return false;
   const auto range = openvdb::tools::minMax(grid.tree());
   const double least = range.min(), most = range.max();
-  return least < 0.0 && most > 0.0 && std::max(-least, most) <= band * (1.0 + kRounding) && std::max(-least, most) >= kLeastOfBand * band;
+  return least < 0.0 && most > 0.0 && std::max(-least, most) <= band * (1.0 + kRounding) && std::max(-least, most) >= kMinOfBand * band;
 }
 
 }  // namespace

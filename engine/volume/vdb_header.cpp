@@ -97,20 +97,20 @@ const TypeSize* find(std::span<const TypeSize> types, const std::string& type) {
 /// Skips the masks and sizes of leaves that are stored for delayed loading. OpenVDB allocates by their
 /// counts.
 void skipDelayedLoading(VdbReader& reader, std::uint32_t bytes) {
-  constexpr std::uint64_t kSmallestLeaf = 64;
-  constexpr std::uint64_t kSmallestPacked = 128;  // OpenVDB pads shorter data before compressing it
+  constexpr std::uint64_t kMinLeaf = 64;
+  constexpr std::uint64_t kMinPacked = 128;  // OpenVDB pads shorter data before compressing it
   constexpr std::uint32_t kNone = std::numeric_limits<std::uint32_t>::max();
   if (bytes == 0) return;
   const std::uint64_t end = reader.position() + bytes;
   const std::uint64_t leaves = reader.read<std::uint32_t>();
-  if (leaves > reader.size() / kSmallestLeaf) reader.failDamaged("its metadata counts {} leaves", leaves);
+  if (leaves > reader.size() / kMinLeaf) reader.failDamaged("its metadata counts {} leaves", leaves);
   for (const std::size_t bytesOfOne : {sizeof(std::int8_t), sizeof(std::int64_t)}) {
     const auto packed = reader.read<std::uint32_t>();
     const bool isLeftOut = bytesOfOne > 1 && packed == kNone;  // only sizes can be left out
     if (packed == 0)
       reader.skip(leaves * bytesOfOne);
     else if (!isLeftOut)
-      skipBlosc(reader, packed, std::max(leaves * bytesOfOne, kSmallestPacked));
+      skipBlosc(reader, packed, std::max(leaves * bytesOfOne, kMinPacked));
   }
   if (reader.position() > end) reader.failDamaged("its metadata is longer than its size");
   reader.seek(end);

@@ -27,7 +27,7 @@ constexpr ValueLayout kLayouts[] = {
     {"Tree_int64_5_4_3", 8, 8},  {"Tree_vec3i_5_4_3", 12, 12},       {"Tree_vec3s_5_4_3", 12, 6},
     {"Tree_vec3d_5_4_3", 24, 6}, {"Tree_bool_5_4_3", 1, 1, 12 + 64}, {"Tree_mask_5_4_3", 1, 1, 12}};
 
-constexpr int kLargestNode = 5, kLeaf = 3;  // log2 of children along an edge
+constexpr int kMaxNode = 5, kLeaf = 3;  // log2 of children along an edge
 constexpr std::int32_t kRootCell = 1 << (5 + 4 + 3);
 
 template <int Log2>
@@ -74,7 +74,7 @@ class TreeCheck {
       // OpenVDB sorts the children, and reads their leaves in that order.
       if (i > 0 && !(previous < cell)) reader_.failDamaged("the nodes of a tree are out of order");
       previous = cell;
-      checkNode<kLargestNode>();
+      checkNode<kMaxNode>();
     }
   }
 

@@ -43,11 +43,11 @@ Volume boxVolume(const openvdb::math::Transform& transform, const openvdb::Coord
 }
 
 void limitOverflow(ScalarBricks& scalars, std::uint64_t& overflown) {
-  constexpr float kLargestHalf = 65504.0f;
+  constexpr float kMaxHalf = 65504.0f;
   for (ScalarBricks::Brick& brick : scalars.bricks())
     for (float& scalar : brick)
       if (std::isinf(scalar)) {
-        scalar = std::copysign(kLargestHalf, scalar);
+        scalar = std::copysign(kMaxHalf, scalar);
         ++overflown;
       }
 }

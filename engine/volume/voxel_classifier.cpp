@@ -74,7 +74,7 @@ ClassifiedVoxel VoxelClassifier::meanOver(float place, const std::array<float, 6
     extinction += std::abs(change) > TransferIntegral::kMinChange ? (integral_->extinctionUpTo(other) - own) / change : there;
   }
   const glm::dvec4 range = integral_->meanAt(first, last);
-  return {std::clamp(extinction / 6.0, 0.0, kMaximumExtinction), range.a > 0.0 ? glm::dvec3(range) / range.a : glm::dvec3(0.0)};
+  return {std::clamp(extinction / 6.0, 0.0, kMaxExtinction), range.a > 0.0 ? glm::dvec3(range) / range.a : glm::dvec3(0.0)};
 }
 
 ClassifiedVoxel VoxelClassifier::at(glm::ivec3 voxel) const {

@@ -15,7 +15,7 @@ namespace {
 using ZarrJson = nlohmann::json;
 using Extents = std::vector<std::uint64_t>;
 
-constexpr std::uint64_t kLargestMetadata = std::uint64_t(64) << 20, kLargestChunk = std::uint64_t(1) << 30;
+constexpr std::uint64_t kMaxMetadata = std::uint64_t(64) << 20, kMaxChunk = std::uint64_t(1) << 30;
 
 /// Parses the description of one array, whose name is in the sentences of its errors.
 class LayoutParser {
@@ -56,8 +56,8 @@ class LayoutParser {
 
   Extents extentsOf(const ZarrJson& object, const char* key) const {
     const ZarrJson& list = member(object, key);
-    constexpr std::size_t kMostAxes = 16;
-    if (!list.is_array() || list.empty() || list.size() > kMostAxes) failOf(key);
+    constexpr std::size_t kMaxAxes = 16;
+    if (!list.is_array() || list.empty() || list.size() > kMaxAxes) failOf(key);
     Extents extents;
     for (const ZarrJson& one : list) {
       if (!one.is_number_unsigned() || one.get<std::uint64_t>() < 1) failOf(key);
@@ -87,11 +87,11 @@ class LayoutParser {
   }
 
   void takeFill(const ZarrJson& value) {
-    constexpr float kLargestFloat = std::numeric_limits<float>::max();
+    constexpr float kMaxFloat = std::numeric_limits<float>::max();
     if (value.is_boolean())
       layout_.fill = value.get<bool>() ? 1.0f : 0.0f;
     else if (value.is_number())
-      layout_.fill = float(std::clamp(value.get<double>(), -double(kLargestFloat), double(kLargestFloat)));
+      layout_.fill = float(std::clamp(value.get<double>(), -double(kMaxFloat), double(kMaxFloat)));
     else if (value == "Infinity" || value == "-Infinity")
       layout_.fill = std::numeric_limits<float>::infinity() * (value == "Infinity" ? 1.0f : -1.0f);
     else if (value.is_string())  // "NaN", or its bits
@@ -191,9 +191,8 @@ class LayoutParser {
     std::uint64_t stride = 1;
     for (std::size_t i = order.size(); i-- > 0;) {
       layout_.strides[order[i]] = stride;
-      if (layout_.chunk[order[i]] > kLargestChunk / stride)
-        fail(ErrorKind::Input, "'{}' has chunks of more than {} values, which are not read: write it with smaller ones", name_,
-             kLargestChunk);
+      if (layout_.chunk[order[i]] > kMaxChunk / stride)
+        fail(ErrorKind::Input, "'{}' has chunks of more than {} values, which are not read: write it with smaller ones", name_, kMaxChunk);
       stride *= layout_.chunk[order[i]];
     }
   }
@@ -201,14 +200,14 @@ class LayoutParser {
   void checkExtents() const {
     const std::size_t axes = layout_.shape.size();
     if (layout_.chunk.size() != axes || layout_.shard.size() != axes) failOf("number of axes of chunks");
-    if (layout_.bytesOfChunk() > kLargestChunk)
+    if (layout_.bytesOfChunk() > kMaxChunk)
       fail(ErrorKind::Input, "'{}' has chunks of {} MiB, and those of up to {} are read: write it with smaller ones", name_,
-           layout_.bytesOfChunk() >> 20, kLargestChunk >> 20);
-    constexpr std::uint64_t kMostChunks = std::uint64_t(1) << 24;  // of a shard
+           layout_.bytesOfChunk() >> 20, kMaxChunk >> 20);
+    constexpr std::uint64_t kMaxChunks = std::uint64_t(1) << 24;  // of a shard
     std::uint64_t chunks = 1;
     for (std::size_t axis = 0; axis < axes; ++axis) {
       if (layout_.shard[axis] % layout_.chunk[axis] != 0) failOf("extent of shards");
-      if (layout_.shard[axis] / layout_.chunk[axis] > kMostChunks / chunks) failOf("extent of shards");
+      if (layout_.shard[axis] / layout_.chunk[axis] > kMaxChunks / chunks) failOf("extent of shards");
       chunks *= layout_.shard[axis] / layout_.chunk[axis];
     }
   }
@@ -226,7 +225,7 @@ std::uint64_t ZarrLayout::bytesOfChunk() const {
 }
 
 nlohmann::json zarrJson(const FileStore& store, const std::string& name) {
-  const std::unique_ptr<StoredFile> file = store.open(name, kLargestMetadata);
+  const std::unique_ptr<StoredFile> file = store.open(name, kMaxMetadata);
   if (!file) return nullptr;
   const std::vector<std::byte> bytes = readAll(store, name, *file);
   nlohmann::json json = parseJsonQuietly({reinterpret_cast<const char*>(bytes.data()), bytes.size()});

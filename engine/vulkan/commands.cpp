@@ -94,7 +94,7 @@ void Commands::nextSlice() {
 
 /// Whether another slice may begin: not before the first pass, as only passes are measured, and not if timestamps run short.
 bool Commands::mayDivide() const {
-  return !passes_.empty() && passes_.size() < CommandSlot::kMaximumTimestamps / 2;
+  return !passes_.empty() && passes_.size() < CommandSlot::kMaxTimestamps / 2;
 }
 
 void Commands::writeTimestamp() {
@@ -106,7 +106,7 @@ void Commands::writeTimestamp() {
 }
 
 void Commands::beginSpan(const std::string& pass) {
-  FV_CHECK_LT(slot_->usedTimestamps + 1, CommandSlot::kMaximumTimestamps);
+  FV_CHECK_LT(slot_->usedTimestamps + 1, CommandSlot::kMaxTimestamps);
   writeTimestamp();
   passes_.push_back({pass, 0.0});
 }

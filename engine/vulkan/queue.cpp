@@ -15,13 +15,12 @@ std::unique_ptr<CommandSlot> makeSlot(const Device& device) {
   VK_CHECK(vkCreateCommandPool(device.handle(), &poolInfo, nullptr, &pool));
   slot->pool = OwnedCommandPool(device.handle(), pool);
 
-  const VkQueryPoolCreateInfo queryInfo{.sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO,
-                                        .queryType = VK_QUERY_TYPE_TIMESTAMP,
-                                        .queryCount = CommandSlot::kMaximumTimestamps};
+  const VkQueryPoolCreateInfo queryInfo{
+      .sType = VK_STRUCTURE_TYPE_QUERY_POOL_CREATE_INFO, .queryType = VK_QUERY_TYPE_TIMESTAMP, .queryCount = CommandSlot::kMaxTimestamps};
   VkQueryPool queries = VK_NULL_HANDLE;
   VK_CHECK(vkCreateQueryPool(device.handle(), &queryInfo, nullptr, &queries));
   slot->timestamps = OwnedQueryPool(device.handle(), queries);
-  slot->usedTimestamps = CommandSlot::kMaximumTimestamps;  // new queries have to be reset as well
+  slot->usedTimestamps = CommandSlot::kMaxTimestamps;  // new queries have to be reset as well
   return slot;
 }
 

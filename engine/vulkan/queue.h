@@ -19,11 +19,11 @@ class Device;
 /// The Vulkan objects of one recording. The queue keeps them after the recording is complete and lends them to a later one,
 /// so that a frame creates no command pool and no query pool.
 struct CommandSlot {
-  static constexpr std::uint32_t kMaximumTimestamps = 4096;
+  static constexpr std::uint32_t kMaxTimestamps = 4096;
 
   OwnedCommandPool pool;
   std::vector<VkCommandBuffer> buffers;  ///< allocated from the pool; a recording uses the first ones
-  OwnedQueryPool timestamps;             ///< kMaximumTimestamps queries
+  OwnedQueryPool timestamps;             ///< kMaxTimestamps queries
   std::uint32_t usedTimestamps = 0;      ///< the queries that have to be reset before the next use
 };
 

@@ -114,7 +114,7 @@ TEST_F(HierarchyTest, BlocksSendWhatTheirVoxelsDo) {
   const glm::ivec3 even(32);
   const Volume uniform = makeVolume(even, cubeTransform(even), [](int, int, int) { return 1.0; });
   const Volume random = randomVolume(kOdd, shearedTransform(kOdd), 0.3, 1.0);
-  const double sigma = 3.0, halfCode = std::sqrt(kMaximumCodedDepth * sigma) / 255.0;  // at the far side
+  const double sigma = 3.0, halfCode = std::sqrt(kMaxCodedDepth * sigma) / 255.0;  // at the far side
   for (const Volume* volume : {&uniform, &random}) {
     Renderer renderer(device(), *volume, {.densityScale = sigma}, {});
     Camera camera = framingCamera(*volume, 0.0, 0.0, 1.0, {.orthographic = true});

@@ -7,9 +7,9 @@
 namespace freevoxels::fuzz {
 
 inline void readScanOf(ScanReader& reader) {
-  constexpr std::uint64_t kMostVoxels = 1 << 18, kMostBytes = std::uint64_t(1) << 28;
+  constexpr std::uint64_t kMostVoxels = 1 << 18, kMaxBytes = std::uint64_t(1) << 28;
   const ScanHeader& header = reader.header();
-  if (header.samples() > kMostVoxels || reader.bytesToRead() > kMostBytes) return;
+  if (header.samples() > kMostVoxels || reader.bytesToRead() > kMaxBytes) return;
   ScanVoxels voxels(header.dimensions);
   const int channels = std::max(int(header.channels.size()), 1);
   reader.read({.timeStep = header.timeSteps - 1, .channel = channels - 1},

@@ -49,7 +49,7 @@ TEST(FixedSums, LargeFilesKeepEveryBit) {
   const test::TemporaryFolder folder;
   for (const glm::ivec2 extent : {glm::ivec2(16384, 33), glm::ivec2(700, 800), glm::ivec2(1, 16384), glm::ivec2(512, 512)})
     for (const int channels : {kSumChannels, kSumChannels - 1}) {
-      const glm::ivec2 first = glm::min(glm::ivec2(37, 5), kMaximumImageEdge - extent);
+      const glm::ivec2 first = glm::min(glm::ivec2(37, 5), kMaxImageEdge - extent);
       FixedSums sums{.size = first + extent, .first = first, .extent = extent, .channels = channels, .digits = {40, 40, 40, 43, 50, 38}};
       sums.values.resize(sums.pixelCount() * std::size_t(channels));
       for (std::size_t i = 0; i < sums.values.size(); ++i) sums.values[i] = std::int64_t(i % 251 == 0 ? ~i << 20 : i);

@@ -143,7 +143,7 @@ TEST(CurvesOfAFile, RefuseWhatIsNoFunction) {
     if (wrong != 1e200) { EXPECT_THROW(curvesOf("f", {.opacity = {{0.0, wrong}}}), Error); }
   }
   FileFunction large;
-  large.opacity.resize(kMostFilePoints + 1, {0.0, 0.0});
+  large.opacity.resize(kMaxFilePoints + 1, {0.0, 0.0});
   EXPECT_THROW(curvesOf("f", large), Error);
 }
 
