@@ -13,6 +13,7 @@
 
 #include "apps/common/sequence.h"
 #include "apps/view/keys.h"
+#include "apps/view/opened_file.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
@@ -26,7 +27,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxFiles = 20000;  // that are listed
+constexpr std::size_t kMaxFiles = 20000;       // that are listed
+constexpr const char* kThisFolder = ".";       // the name of the entry that opens the folder itself
+constexpr double kSecondsOfDoubleClick = 0.8;  // more than ImGui has, which counts by frames: while an image is made they are slow
 
 std::string sizeText(std::uintmax_t bytes) {
   if (bytes < 1024) return fmt::format("{} B", bytes);
@@ -44,12 +47,6 @@ std::string timeText(fs::file_time_type time) {
   return text;
 }
 
-bool hasEnding(const fs::path& file, const std::vector<std::string>& endings) {
-  std::string name = file.filename().string();
-  std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
-  return std::ranges::any_of(endings, [&](const std::string& ending) { return name.ends_with(ending); });
-}
-
 /// What can be opened.
 std::vector<std::string> openedEndings() {
   std::vector<std::string> endings{".vdb", ".fvx", ".json", ".exr", ".hdr"};
@@ -62,9 +59,14 @@ bool isOpenedFolder(const fs::path& folder) {
   return hasEnding(folder, {".zarr"});
 }
 
-/// Whether the files of a numbered name may be frames: those of DICOM are slices.
-bool mayBeFrame(const fs::path& file) {
-  return hasEnding(file, {".vdb"}) || (hasScanEnding(file) && !hasEnding(file, {".dcm", ".ima"}));
+/// How many files of a folder are the slices of volumes, which open by its name: TIFF and DICOM, of which the latter often have no ending.
+std::size_t slicesAmong(const std::vector<fs::path>& files) {
+  constexpr std::ptrdiff_t kTried = 3;  // of files whose endings say nothing
+  const auto slices = std::ranges::count_if(files, [](const fs::path& file) { return hasEnding(file, {".tif", ".tiff", ".dcm", ".ima"}); });
+  if (slices > 0) return std::size_t(slices);
+  std::vector<fs::path> unknown;
+  std::ranges::copy_if(files, std::back_inserter(unknown), [](const fs::path& file) { return !hasScanEnding(file); });
+  return std::ranges::any_of(unknown.begin(), unknown.begin() + std::min(kTried, std::ssize(unknown)), isScanFile) ? unknown.size() : 0;
 }
 
 }  // namespace
@@ -100,6 +102,7 @@ void FileDialog::go(fs::path folder) {
   showsRecent_ = false;
   std::vector<Entry> folders;
   std::vector<fs::directory_entry> files;
+  std::vector<fs::path> all;
   std::error_code problem;
   for (fs::directory_iterator at(folder, problem), end; !problem && at != end && files.size() < kMaxFiles; at.increment(problem)) {
     std::error_code unknown;
@@ -108,14 +111,20 @@ void FileDialog::go(fs::path folder) {
       folders.push_back({.name = at->path().filename().string() + "/", .shown = at->path().filename().string() + "/"});
     else if (all_ || hasEnding(at->path(), endings_))
       files.push_back(*at);
+    if (at->is_regular_file(unknown)) all.push_back(at->path());
   }
   if (problem) {
     problem_ = fmt::format("cannot read the folder '{}': {}", folder.string(), problem.message());
     return;
   }
-  folder_ = std::move(folder);
+  // Without the slash that the name of a chosen folder ends in.
+  folder_ = folder.has_filename() || !folder.has_relative_path() ? std::move(folder) : folder.parent_path();
+  hidden_ = all.size() - std::min(all.size(), files.size());
   entries_ = std::move(folders);
   std::ranges::sort(entries_, {}, &Entry::name);
+  slices_ = saves_ ? 0 : slicesAmong(all);
+  if (slices_ > 1)
+    entries_.insert(entries_.begin(), {.name = kThisFolder, .shown = fmt::format("This folder, as a volume of {} slices", slices_)});
   std::ranges::sort(files, {}, [](const fs::directory_entry& file) { return file.path(); });
   addFiles(files);
 }
@@ -148,8 +157,9 @@ void FileDialog::confirm(const std::string& typed) {
     chosen_(meant);
     return ImGui::CloseCurrentPopup();
   }
-  const fs::path path = (folder_ / meant).lexically_normal();
-  if (fs::is_directory(path, unknown) && (saves_ || !isOpenedFolder(path))) {
+  const bool isThisFolder = meant == kThisFolder && slices_ > 1;
+  const fs::path path = isThisFolder ? folder_ : (folder_ / meant).lexically_normal();
+  if (fs::is_directory(path, unknown) && !isThisFolder && (saves_ || !isOpenedFolder(path))) {
     go(path);
     if (problem_.empty() && !saves_) name_.clear();
     focus_ = true;
@@ -161,7 +171,7 @@ void FileDialog::confirm(const std::string& typed) {
     return;
   }
   const fs::path below = path.lexically_relative(start_);
-  const bool isBelow = !below.empty() && *below.begin() != "..";
+  const bool isBelow = !below.empty() && *below.begin() != ".." && below != ".";
   ImGui::CloseCurrentPopup();
   chosen_(isBelow ? below.string() : path.string());
 }
@@ -194,11 +204,14 @@ void FileDialog::drawList() {
   for (const Entry& entry : entries_) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    constexpr ImGuiSelectableFlags kRow = ImGuiSelectableFlags_SpanAllColumns | ImGuiSelectableFlags_AllowDoubleClick;
+    constexpr ImGuiSelectableFlags kRow = ImGuiSelectableFlags_SpanAllColumns;
     ImGui::PushID(entry.name.c_str());
     if (ImGui::Selectable("##row", entry.name == name_, kRow)) {
-      if (!entry.isFolder()) name_ = entry.name;
-      if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) chosen = entry.name;
+      const bool again = clicked_ == entry.name && ImGui::GetTime() - clickedAt_ < kSecondsOfDoubleClick;
+      clicked_ = entry.name;
+      clickedAt_ = ImGui::GetTime();
+      if (!saves_ || !entry.isFolder()) name_ = entry.name;  // the name of a file to save stays while one looks for its folder
+      if (again) chosen = entry.name;
     }
     ImGui::PopID();
     ImGui::SameLine(0.0f, 0.0f);
@@ -207,6 +220,11 @@ void FileDialog::drawList() {
     if (!entry.isFolder() && entry.bytes > 0) ImGui::TextDisabled("%s", sizeText(entry.bytes).c_str());
     ImGui::TableNextColumn();
     if (!entry.isFolder()) ImGui::TextDisabled("%s", timeText(entry.time).c_str());
+  }
+  if (entries_.empty() && hidden_ > 0) {
+    ImGui::TableNextRow();
+    ImGui::TableNextColumn();
+    ImGui::TextDisabled("No file of a known kind; \"All files\" shows the other %zu.", hidden_);
   }
   ImGui::EndTable();
   if (!chosen.empty()) confirm(chosen);  // which may replace the entries

@@ -54,6 +54,10 @@ class FileDialog {
   const std::filesystem::path start_;  ///< the working folder
   std::filesystem::path folder_;
   std::vector<Entry> entries_;
+  std::size_t hidden_ = 0;  ///< files of the folder that are not listed
+  std::size_t slices_ = 0;  ///< files of the folder that are slices of volumes
+  std::string clicked_;     ///< the entry that was clicked last, at `clickedAt_` seconds
+  double clickedAt_ = 0.0;
   std::string title_, name_, problem_;
   std::vector<std::string> endings_;
   std::function<void(const std::string&)> chosen_;

@@ -95,7 +95,7 @@ bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
     if (!state.camera) {
       state.begin(image.scene);
       if (image.film) {  // what is automatic would be that of the frame
-        state.keepScales(image.film->scene.classification);
+        state.keepScales(image.film->scene);
         state.scene.camera.look(*state.camera);
       }
       ++revision_;  // what was automatic is given now

@@ -264,8 +264,12 @@ bool ClassificationPanel::drawFile(ViewState& state) {
 void LookPanel::draw(ViewState& state, GridList& grids) {
   if (state.latest) classification_.follow(state);
   if (!ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen) || !state.latest) return;
+  const bool isFixed = state.latest->scene.volume->classificationIsFixed;
+  if (isFixed) drawSentence("The file was baked for this look alone: bake it with --keep-scalars to change it.", false);
+  ImGui::BeginDisabled(isFixed);
   classification_.draw(state);
   emission_.draw(state, grids);
+  ImGui::EndDisabled();
 }
 
 void EmissionPanel::draw(ViewState& state, GridList& grids) {

@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <array>
+#include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 
@@ -11,6 +12,7 @@
 #include "engine/core/error.h"
 #include "engine/core/json_file.h"
 #include "engine/description/scene_json.h"
+#include "engine/volume/scan_file.h"
 #include "engine/volume/transfer_formats.h"
 #include "engine/volume/transfer_source.h"
 
@@ -81,6 +83,16 @@ void openFile(ViewState& state, const std::string& file) {
   } else {
     openScene(state, file);
   }
+}
+
+bool hasEnding(const std::filesystem::path& file, const std::vector<std::string>& endings) {
+  std::string name = file.filename().string();
+  std::ranges::transform(name, name.begin(), [](unsigned char c) { return char(std::tolower(c)); });
+  return std::ranges::any_of(endings, [&](const std::string& ending) { return name.ends_with(ending); });
+}
+
+bool mayBeFrame(const std::filesystem::path& file) {
+  return hasEnding(file, {".vdb"}) || (hasScanEnding(file) && !hasEnding(file, {".dcm", ".ima"}));
 }
 
 bool isWorthRemembering(const std::string& file) {

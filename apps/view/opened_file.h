@@ -1,7 +1,9 @@
 #pragma once
 // Opens files that are dropped onto the window or named in it.
 
+#include <filesystem>
 #include <string>
+#include <vector>
 
 #include "apps/view/view_state.h"
 
@@ -14,5 +16,10 @@ void openFile(ViewState& state, const std::string& file);
 
 /// Whether it is added to recent files: files that make an image on their own.
 bool isWorthRemembering(const std::string& file);
+
+/// Whether a name ends in one of these, which are in lower case, whatever its own case.
+bool hasEnding(const std::filesystem::path& file, const std::vector<std::string>& endings);
+/// Whether files that are numbered as it is may be the frames of a sequence: those of DICOM are slices of a volume.
+bool mayBeFrame(const std::filesystem::path& file);
 
 }  // namespace freevoxels

@@ -100,7 +100,7 @@ void drawBox(const Volume& volume, const Camera& camera, const ImageFrame& frame
     }
 }
 
-void drawScaleBar(const Camera& camera, const ImageFrame& frame) {
+void drawScaleBar(const Camera& camera, const ImageFrame& frame, const std::string& lengthUnit) {
   const double pixel = pixelLength(camera, double(frame.size().y));
   const double length = roundLength(140.0 * double(unit()) * pixel);
   const auto width = float(length / pixel);
@@ -111,7 +111,7 @@ void drawScaleBar(const Camera& camera, const ImageFrame& frame) {
     list.AddLine(left, right, color, 2.0f);
     for (const ImVec2 at : {left, right}) list.AddLine({at.x, at.y - 5.0f}, {at.x, at.y + 1.0f}, color, 2.0f);
   }
-  const std::string text = fmt::format("{:g} {}", length, length == 1.0 ? "unit" : "units");
+  const std::string text = fmt::format("{:g} {}", length, !lengthUnit.empty() ? lengthUnit : length == 1.0 ? "unit" : "units");
   const float textWidth = ImGui::CalcTextSize(text.c_str()).x;
   drawText(list, {end.x - 0.5f * (width + textWidth), end.y - 1.5f * ImGui::GetFontSize()}, kInk, text);
 }
@@ -267,7 +267,7 @@ void drawOverlays(const ViewState& state, const ImageFrame& frame) {
   if (state.latest && (state.overlays.box || state.scene.input.clipBox)) drawBox(*state.latest->scene.volume, camera, frame);
   if (state.latest && state.scene.input.clipPlane) drawPlane(*state.latest->scene.volume, *state.scene.input.clipPlane, camera, frame);
   if (state.overlays.colorBar && isVolume) drawColorBar(state, frame);
-  if (state.overlays.scaleBar) drawScaleBar(camera, frame);
+  if (state.overlays.scaleBar) drawScaleBar(camera, frame, state.latest ? state.latest->scene.volume->lengthUnit : "");
   if (state.overlays.axes) drawAxes(camera, frame);
   const ClipHandles::Handle* const hovered = clip.hovered();
   for (const ClipHandles::Handle& handle : clip.handles) {

@@ -41,7 +41,8 @@ void ViewState::setCamera(const Camera& next) {
 void ViewState::begin(const Scene& first) {
   camera = first.camera;
   pole = first.camera.up;
-  if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction)
+  const bool isFixed = first.volume && first.volume->classificationIsFixed;
+  if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction && !isFixed)
     scene.classification.takeFunction(*function);
   LightingDescription& lighting = scene.lighting;
   if (lighting.hasLight() || !first.lighting) return;
@@ -62,10 +63,12 @@ void ViewState::showFrame(const std::string& file) {
   changed = true;
   if (!camera) return;  // the first image says what is not given
   scene.camera.look(*camera);
-  keepScales(latest->scene.classification);
+  keepScales(latest->scene);
 }
 
-void ViewState::keepScales(const Classification& now) {
+void ViewState::keepScales(const Scene& of) {
+  if (of.volume && of.volume->classificationIsFixed) return;
+  const Classification& now = of.classification;
   ClassificationDescription& classification = scene.classification;
   if (!now.transferFunction && !classification.densityScale) classification.takeDensityScale(now.densityScale);
   if (now.emission) scene.emission.take(*now.emission);

@@ -63,7 +63,7 @@ struct ViewState : Edits {
   /// before, so that an animation does not flicker.
   void showFrame(const std::string& file);
   /// Gives the scales of densities and emission of an image, so that all frames of a sequence have them.
-  void keepScales(const Classification& now);
+  void keepScales(const Scene& of);
   /// Draws only the voxels in the box and behind the plane, as far as they are given. The density scale stays what it is, although less
   /// of the volume is there.
   void clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane);

@@ -12,6 +12,7 @@
 #include "apps/view/actions.h"
 #include "apps/view/clip_panel.h"
 #include "apps/view/keys.h"
+#include "apps/view/opened_file.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_description.h"
@@ -115,7 +116,7 @@ void SequencePanel::offer(ViewState& state) {
   const std::string& file = state.scene.input.volume;
   if (offeredFor_ != file) {
     offeredFor_ = file;
-    offered_ = proceduralName(file) ? std::nullopt : sequenceAround(file);
+    offered_ = proceduralName(file) || !mayBeFrame(file) ? std::nullopt : sequenceAround(file);
   }
   if (!offered_) return;
   const std::string text = fmt::format("Open all {} frames", offered_->files.size());

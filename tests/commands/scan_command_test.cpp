@@ -4,6 +4,7 @@
 
 #include "engine/image/image.h"
 #include "tests/commands/program_runner.h"
+#include "tests/commands/viewer_fixture.h"
 #include "tests/volume/scan_fixture.h"
 #include "tests/volume/tiff_fixture.h"
 #include "tests/volume/zarr_fixture.h"
@@ -218,6 +219,22 @@ TEST_F(ScanCommand, BakedAndNumberedScansAreTheSameImages) {
   EXPECT_NEAR(there.a, expected.a, 0.02f);
   expectSuccess(run("render @a_#.nrrd @film_#.exr --quiet --unlit --size 64 --density-scale 0.0002 --no-fixed-view"));
   EXPECT_EQ(readExr(folder / "film_2.exr").pixels, whole.pixels);
+}
+
+class ViewerOfScans : public Viewer {};
+
+TEST_F(ViewerOfScans, AFolderOfSlicesIsOpenedAsAVolume) {
+  std::filesystem::create_directories(folder / "slices");
+  for (int i = 0; i < 3; ++i) writeBytes(folder / fmt::format("slices/{}.tif", i), TiffFixture{.firstPage = i}.bytes());
+  const auto session = use("procedural:cloud --resolution 16");
+  session->hands("windowsize @ 900 600");
+  session->open("slices");
+  session->hands("type --delay 1 .");
+  session->hands("key Return mousemove 700 300");
+  session->saveAll('e', "b.json", "slices/b.json");
+  const nlohmann::json scene = nlohmann::json::parse(readBytes(folder / "slices/b.json"));
+  EXPECT_EQ(scene.at("input").at("volume"), ".");
+  expectQuietEnd(*session);
 }
 
 }  // namespace freevoxels::test

@@ -23,6 +23,20 @@ class EditHistoryTest : public testing::Test {
   EditHistory history;
 };
 
+TEST(ViewState, TakesWhatTheFirstImageChoseUnlessTheFileFixesIt) {
+  for (const bool isFixed : {false, true}) {
+    Volume volume;
+    volume.classificationIsFixed = isFixed;
+    Scene first{.volume = std::make_shared<const Volume>(volume), .classification = {}};
+    ViewState ofDensities, ofFunction;
+    ofDensities.keepScales(first);
+    EXPECT_EQ(ofDensities.scene.classification.densityScale.has_value(), !isFixed);
+    first.classification.transferFunction = TransferFunction{.opacity = {{0.0f, 0.0f}, {1.0f, 0.5f}}, .color = {{0.0f, glm::vec3(1.0f)}}};
+    ofFunction.begin(first);
+    EXPECT_EQ(ofFunction.scene.classification.transferFunction.has_value(), !isFixed);
+  }
+}
+
 TEST_F(EditHistoryTest, UndoAndRedoGoThroughTheStepsInOrder) {
   for (const double stops : {1.0, 2.0, 3.0}) {
     expose(stops);
