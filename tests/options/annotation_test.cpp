@@ -19,6 +19,7 @@ struct Annotated {
   Annotated() {
     description.method.annotate = true;
     description.method.slice = SlicePlane{};
+    scene.volume = std::make_shared<const Volume>();
     scene.camera = {.orthographic = true, .orthographicHeight = 20.0};
   }
   glm::vec4 at(int x, int y) const { return image.pixels[std::size_t(y) * 400 + std::size_t(x)]; }
@@ -45,6 +46,14 @@ TEST(Annotation, LengthsAreRoundAndHaveUnits) {
   EXPECT_EQ(lengthText(0.02, "mm"), "20 \u00b5m");
   EXPECT_EQ(lengthText(1e-5, "mm"), "10 nm");
   EXPECT_EQ(lengthText(0.2, ""), "0.2");
+}
+
+TEST(Annotation, UnitsAreThoseOfTheVolume) {
+  Annotated none, millimetres;
+  millimetres.scene.volume = std::make_shared<const Volume>(Volume{.lengthUnit = "mm"});
+  none.draw();
+  millimetres.draw();
+  EXPECT_NE(none.image.pixels, millimetres.image.pixels);
 }
 
 TEST(Annotation, TheScaleBarIsAsLongAsItSays) {
