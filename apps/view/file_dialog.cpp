@@ -103,6 +103,7 @@ void FileDialog::go(fs::path folder) {
   std::vector<Entry> folders;
   std::vector<fs::directory_entry> files;
   std::vector<fs::path> all;
+  std::size_t hidden = 0;
   std::error_code problem;
   for (fs::directory_iterator at(folder, problem), end; !problem && at != end && files.size() < kMaxFiles; at.increment(problem)) {
     std::error_code unknown;
@@ -111,6 +112,8 @@ void FileDialog::go(fs::path folder) {
       folders.push_back({.name = at->path().filename().string() + "/", .shown = at->path().filename().string() + "/"});
     else if (all_ || hasEnding(at->path(), endings_))
       files.push_back(*at);
+    else
+      ++hidden;
     if (at->is_regular_file(unknown)) all.push_back(at->path());
   }
   if (problem) {
@@ -119,7 +122,7 @@ void FileDialog::go(fs::path folder) {
   }
   // Without the slash that the name of a chosen folder ends in.
   folder_ = folder.has_filename() || !folder.has_relative_path() ? std::move(folder) : folder.parent_path();
-  hidden_ = all.size() - std::min(all.size(), files.size());
+  hidden_ = hidden;
   entries_ = std::move(folders);
   std::ranges::sort(entries_, {}, &Entry::name);
   slices_ = saves_ ? 0 : slicesAmong(all);

@@ -54,7 +54,7 @@ class FileDialog {
   const std::filesystem::path start_;  ///< the working folder
   std::filesystem::path folder_;
   std::vector<Entry> entries_;
-  std::size_t hidden_ = 0;  ///< files of the folder that are not listed
+  std::size_t hidden_ = 0;  ///< files of the folder of kinds that are not listed
   std::size_t slices_ = 0;  ///< files of the folder that are slices of volumes
   std::string clicked_;     ///< the entry that was clicked last, at `clickedAt_` seconds
   double clickedAt_ = 0.0;

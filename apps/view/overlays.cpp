@@ -111,7 +111,8 @@ void drawScaleBar(const Camera& camera, const ImageFrame& frame, const std::stri
     list.AddLine(left, right, color, 2.0f);
     for (const ImVec2 at : {left, right}) list.AddLine({at.x, at.y - 5.0f}, {at.x, at.y + 1.0f}, color, 2.0f);
   }
-  const std::string text = fmt::format("{:g} {}", length, !lengthUnit.empty() ? lengthUnit : length == 1.0 ? "unit" : "units");
+  const std::string text =
+      !lengthUnit.empty() ? lengthText(length, lengthUnit) : fmt::format("{:g} {}", length, length == 1.0 ? "unit" : "units");
   const float textWidth = ImGui::CalcTextSize(text.c_str()).x;
   drawText(list, {end.x - 0.5f * (width + textWidth), end.y - 1.5f * ImGui::GetFontSize()}, kInk, text);
 }

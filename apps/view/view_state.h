@@ -62,7 +62,7 @@ struct ViewState : Edits {
   /// Opens another frame of the sequence with the same camera. Automatic settings stay those of the frame
   /// before, so that an animation does not flicker.
   void showFrame(const std::string& file);
-  /// Gives the scales of densities and emission of an image, so that all frames of a sequence have them.
+  /// Gives the scales of densities and emission of an image, so that all frames of a sequence have them, unless its file fixes them.
   void keepScales(const Scene& of);
   /// Draws only the voxels in the box and behind the plane, as far as they are given. The density scale stays what it is, although less
   /// of the volume is there.
