@@ -53,11 +53,11 @@ class TiffFile {
   }
   /// The values of a tag that libtiff does not know; none where it is not there, or is of other types.
   template <typename Value>
-  std::span<const Value> list(std::uint32_t number, std::initializer_list<TIFFDataType> types) const {
+  std::span<const Value> list(std::uint32_t number, std::initializer_list<int> types) const {
     const TIFFField* const field = TIFFFindField(tiff_.get(), number, TIFF_ANY);
-    if (field == nullptr || TIFFFieldReadCount(field) != TIFF_VARIABLE2 || TIFFFieldPassCount(field) == 0 ||
-        std::ranges::find(types, TIFFFieldDataType(field)) == types.end())
-      return {};
+    if (field == nullptr || TIFFFieldReadCount(field) != TIFF_VARIABLE2 || TIFFFieldPassCount(field) == 0) return {};
+    const int type = TIFFFieldDataType(field);  // of a damaged file any number, which a TIFFDataType must not hold
+    if (std::ranges::find(types, type) == types.end()) return {};
     std::uint32_t count = 0;
     const Value* values = nullptr;
     if (TIFFGetField(tiff_.get(), number, &count, &values) != 1 || values == nullptr) return {};
