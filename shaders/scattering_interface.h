@@ -25,7 +25,10 @@ struct SweepDirection {
   vec3 sky;          // radiance with which lines enter the volume
 };
 
-// scattering_direct.comp
+// scattering_direct.comp: the rays of a light through the direct cells, as RaySweep::fans()
+struct DirectFans {
+  FaceRays fans[6];
+};
 struct ScatteringDirectPush {
   ivec3 cells;
   ivec3 directCells;
@@ -36,6 +39,7 @@ struct ScatteringDirectPush {
   vec3 depthScale;     // factor of optical depths, by channel
   int isFirst;         // whether it is the first light
   mat3 directToWorld;  // linear part
+  uvec2 rays;          // device address of the rays' depths
 };
 
 // scattering_source.comp

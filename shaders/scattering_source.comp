@@ -11,20 +11,23 @@ layout(scalar, push_constant) uniform Push { ScatteringSourcePush push; };
 layout(binding = 0, scalar) readonly restrict buffer Medium { float medium[]; };
 layout(binding = 1, scalar) readonly restrict buffer Vectors { float vectors[]; };
 layout(binding = 2, scalar) readonly restrict buffer Direct { float direct[]; };
-layout(binding = 3, scalar) writeonly restrict buffer Sources { float sources[]; };
+layout(binding = 3, rgba32f) writeonly uniform imageBuffer sources;  // by moment and cell
 
 void main() {
   const int cell = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
   if (cell >= push.count) return;
-  const int planes = kChannels * (kFlux ? 4 : 1);
-  [[unroll]] for (int plane = 0; plane < 12; ++plane) {
-    if (plane >= planes) continue;
-    const int place = plane * push.count + cell, channel = plane % kChannels;
-    float light = 0.0;
-    if (push.from >= 0) light += vectors[push.from * planes * push.count + place];
-    if (push.direct >= 0) light += direct[place];
-    float source = medium[(push.scattering + channel) * push.count + cell] * light;
-    if (push.emission >= 0 && plane < kChannels) source += medium[(push.emission + channel) * push.count + cell];
-    sources[place] = source;
+  const int moments = kFlux ? 4 : 1, planes = kChannels * moments;
+  [[unroll]] for (int moment = 0; moment < 4; ++moment) {
+    if (moment >= moments) continue;
+    vec4 source = vec4(0.0);
+    [[unroll]] for (int channel = 0; channel < kChannels; ++channel) {
+      const int place = (moment * kChannels + channel) * push.count + cell;
+      float light = 0.0;
+      if (push.from >= 0) light += vectors[push.from * planes * push.count + place];
+      if (push.direct >= 0) light += direct[place];
+      source[channel] = medium[(push.scattering + channel) * push.count + cell] * light;
+      if (push.emission >= 0 && moment == 0) source[channel] += medium[(push.emission + channel) * push.count + cell];
+    }
+    imageStore(sources, moment * push.count + cell, source);
   }
 }

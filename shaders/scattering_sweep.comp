@@ -4,6 +4,7 @@
 // leaves the volume at a side, it continues at the opposite side with the line that enters there, so that all lines are marched and every
 // cell is visited once.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 #include "scattering_interface.h"
 
 layout(constant_id = 0) const int kChannels = 1;
@@ -12,10 +13,10 @@ layout(constant_id = 2) const bool kTinted = false;  // whether each channel has
 
 layout(local_size_x = kScatteringThreads) in;
 layout(scalar, push_constant) uniform Push { ScatteringSweepPush push; };
-layout(binding = 0, scalar) readonly restrict buffer Medium { float medium[]; };  // whose first planes are extinctions
-layout(binding = 1, scalar) readonly restrict buffer Sources { float sources[]; };
+layout(binding = 0) uniform textureBuffer medium;   // whose first planes are extinctions
+layout(binding = 1) uniform textureBuffer sources;  // by moment and cell
 layout(binding = 2, scalar) readonly restrict buffer Directions { SweepDirection directions[]; };
-layout(binding = 3, scalar) writeonly restrict buffer Light { float light[]; };  // by direction of the batch and channel
+layout(binding = 3, rgba32f) writeonly uniform imageBuffer light;  // by direction of the batch and cell
 
 void main() {
   const int number = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
@@ -26,29 +27,30 @@ void main() {
   const ivec3 strides = ivec3(1, push.cells.x, push.cells.x * push.cells.y);
   const int planes = push.cells[axes.z], count = strides.z * push.cells.z;
   const ivec3 step = ivec3(direction.step[axes.x], direction.step[axes.y], direction.step[axes.z]);
-  const int slot = int(gl_WorkGroupID.z) * kChannels * count;
+  const int slot = int(gl_WorkGroupID.z) * count;
   const vec3 sky = push.hasSky != 0 ? direction.sky : vec3(0.0), flux = push.flux * direction.unit;
   ivec2 side = ivec2(number % sides.x, number / sides.x);
   int plane = step.z > 0 ? 0 : planes - 1;
   vec3 radiance = sky, sourceBefore = vec3(0.0), extinctionBefore = vec3(0.0);
   for (int k = 0; k < planes; ++k) {
     const int place = side.x * strides[axes.x] + side.y * strides[axes.y] + plane * strides[axes.z];
-    float mean = 0.0, through = 1.0;
+    vec3 through, mean, source = texelFetch(sources, place).rgb;
+    if (kFlux)
+      [[unroll]] for (int i = 0; i < 3; ++i) source += flux[i] * texelFetch(sources, (1 + i) * count + place).rgb;
     [[unroll]] for (int c = 0; c < kChannels; ++c) {
-      const int inPlane = c * count + place;
       if (c == 0 || kTinted) {
-        const float extinction = medium[inPlane], depth = 0.5 * direction.stepLength * (extinctionBefore[c] + extinction);
-        through = exp(-depth);
-        mean = depth < 0.02 ? 1.0 - depth * (0.5 - depth / 6.0) : (1.0 - through) / depth;
+        const float extinction = texelFetch(medium, c * count + place).x, depth = 0.5 * direction.stepLength * (extinctionBefore[c] + extinction);
+        through[c] = exp(-depth);
+        mean[c] = depth < 0.02 ? 1.0 - depth * (0.5 - depth / 6.0) : (1.0 - through[c]) / depth;
         extinctionBefore[c] = extinction;
+      } else {
+        through[c] = through[0];
+        mean[c] = mean[0];
       }
-      float source = sources[inPlane];
-      if (kFlux)
-        [[unroll]] for (int i = 0; i < 3; ++i) source += flux[i] * sources[(1 + i) * kChannels * count + inPlane];
-      radiance[c] = radiance[c] * through + 0.5 * direction.stepLength * mean * (sourceBefore[c] + source);
-      sourceBefore[c] = source;
-      light[slot + inPlane] = direction.weight * radiance[c];
+      radiance[c] = radiance[c] * through[c] + 0.5 * direction.stepLength * mean[c] * (sourceBefore[c] + source[c]);
     }
+    sourceBefore = source;
+    imageStore(light, slot + place, vec4(direction.weight * radiance, 0.0));
     plane += step.z;
     side += step.xy;
     const bvec2 below = lessThan(side, ivec2(0)), above = greaterThanEqual(side, sides);

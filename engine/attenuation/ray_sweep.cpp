@@ -63,22 +63,21 @@ int planesPerSlab(const FaceRays& fan, glm::ivec3 dimensions) {
   return int(std::clamp<std::uint64_t>(kSlabBytes / bytes, kQuad, most)) / kQuad * kQuad;
 }
 
-/// Bytes of memory for the sweep of a source.
-struct RayRoom {
-  std::uint64_t depths = 0;   ///< for the depths of all faces
-  std::uint64_t largest = 0;  ///< the largest part of `depths` that a single face has
-  std::uint64_t slab = 0, carried = 0;
-
-  std::uint64_t bytes() const { return depths + slab + carried; }
-};
-
-RayRoom roomFor(const std::array<FaceRays, 6>& fans, glm::ivec3 dimensions) {
+/// Without a slab.
+RayRoom roomForRays(const std::array<FaceRays, 6>& fans) {
   RayRoom room{.slab = sizeof(float), .carried = sizeof(float)};  // bindings need buffers even if no face has rays
   for (const FaceRays& fan : fans) {
     if (fan.planeCount == 0) continue;
     room.depths += depthBytes(fan);
     room.largest = std::max(room.largest, depthBytes(fan));
     room.carried = std::max(room.carried, fan.rays() * sizeof(float));
+  }
+  return room;
+}
+
+RayRoom roomFor(const std::array<FaceRays, 6>& fans, glm::ivec3 dimensions) {
+  RayRoom room = roomForRays(fans);
+  for (const FaceRays& fan : fans) {
     const int planes = planesPerSlab(fan, dimensions);
     for (int begin = 0; begin < fan.planeCount; begin += planes) {
       const int end = std::min(begin + planes, fan.planeCount);
@@ -118,13 +117,16 @@ std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
   return roomFor(faceRays(dimensions, source), dimensions).bytes();
 }
 
+std::uint64_t denseRayBytes(glm::ivec3 dimensions, const RaySource& source, double spacing) {
+  return roomForRays(faceRays(dimensions, source, spacing)).bytes();
+}
+
 RaySweep::RaySweep(const Device& device, const char* name)
     : device_(device),
       name_(name),
       expand_(device) {}
 
-void RaySweep::makeRoom(glm::ivec3 dimensions, const RaySource& source) {
-  const RayRoom room = roomFor(faceRays(dimensions, source), dimensions);
+void RaySweep::makeRoom(const RayRoom& room) {
   const std::uint64_t own = depths_.bytes() + slab_.bytes() + carried_.bytes();
   checkFits(device_, room, device_.availableBytes() + own);
   if (growBuffer(device_, depths_, room.depths, "ray depths", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT)) {
@@ -154,7 +156,6 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const F
   const glm::ivec3 dimensions = volume.layout.dimensions;
   // Extinctions of the transfer table are in another unit.
   const double unit = scalars ? 1.0 / (kStoredDepth * volume.voxelSize) : 1.0;
-  const int sideA = (fan.axis + 1) % 3, sideB = (fan.axis + 2) % 3;
   const int planes = planesPerSlab(fan, dimensions), shift = shiftOfQuads(volume, scalars);
   for (int begin = 0; begin < fan.planeCount; begin += planes) {
     const int end = std::min(begin + planes, fan.planeCount);
@@ -163,44 +164,81 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const F
       recordScalars(commands, volume, box.first, box.extent);
     else
       expand_.recordBox(commands, volume, box.first, box.extent, slab_);
-    const glm::ivec3 strides(1, box.extent.x, box.extent.x * box.extent.y);
-    glm::ivec3 origin = -box.first;
-    origin[fan.axis] += fan.firstPlane;
-    const glm::ivec3 offsets = origin * strides;
-    const shader::RaySweepPush push{.fan = onDevice,
-                                    .indexToWorld = unit * glm::dmat3(volume.indexToWorld),
-                                    .sides = {dimensions[sideA], dimensions[sideB]},
-                                    .slab = {.begin = begin,
-                                             .end = end,
-                                             .origin = offsets.x + offsets.y + offsets.z,
-                                             .planeStride = fan.direction * strides[fan.axis],
-                                             .strideA = strides[sideA],
-                                             .strideB = strides[sideB]}};
-    const std::array<Binding, 3> bindings{&slabTexels_, &carried_, scalars ? &volume.scalarBricks->tableTexels : &slabTexels_};
-    commands.dispatchLinear(pipelines_[scalars ? 1 : 0], bindings, push, fan.rays());
-    commands.barrier(kComputeStage, kComputeStage);
+    recordBox(commands, onDevice,
+              {.begin = begin,
+               .end = end,
+               .first = box.first,
+               .extent = box.extent,
+               .dimensions = dimensions,
+               .indexToWorld = unit * glm::dmat3(volume.indexToWorld),
+               .extinction = slabTexels_,
+               .table = scalars ? volume.scalarBricks->tableTexels : slabTexels_},
+              pipelines_[scalars ? 1 : 0]);
+  }
+}
+
+void RaySweep::recordBox(Commands& commands, const shader::FaceRays& fan, const SweptBox& box, const Pipeline& pipeline) const {
+  const int sideA = (fan.axis + 1) % 3, sideB = (fan.axis + 2) % 3;
+  const glm::ivec3 strides(1, box.extent.x, box.extent.x * box.extent.y);
+  glm::ivec3 origin = -box.first;
+  origin[fan.axis] += fan.firstPlane;
+  const glm::ivec3 offsets = origin * strides;
+  const shader::RaySweepPush push{.fan = fan,
+                                  .indexToWorld = box.indexToWorld,
+                                  .sides = {box.dimensions[sideA], box.dimensions[sideB]},
+                                  .slab = {.begin = box.begin,
+                                           .end = box.end,
+                                           .origin = offsets.x + offsets.y + offsets.z,
+                                           .planeStride = fan.direction * strides[fan.axis],
+                                           .strideA = strides[sideA],
+                                           .strideB = strides[sideB]}};
+  const std::array<Binding, 3> bindings{&box.extinction, &carried_, &box.table};
+  commands.dispatchLinear(pipeline, bindings, push, std::uint64_t(fan.rayCount.x) * std::uint64_t(fan.rayCount.y));
+  commands.barrier(kComputeStage, kComputeStage);
+}
+
+/// Places the rays of all faces one behind the other in depths_, and calls recordFan(face, face on the device) for each that has some.
+template <typename RecordFan>
+void RaySweep::recordFans(const std::array<FaceRays, 6>& fans, const RecordFan& recordFan) {
+  VkDeviceAddress address = depths_.address();
+  for (std::size_t i = 0; i < fans.size(); ++i) {
+    fans_[i] = deviceFan(fans[i], address);
+    if (fans[i].planeCount == 0) continue;
+    recordFan(fans[i], fans_[i]);
+    address += depthBytes(fans[i]);
+    if (fans[i].convergence == 0.0) {  // parallel
+      fans_.fill(fans_[i]);
+      break;
+    }
   }
 }
 
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars) {
   const std::array<FaceRays, 6> fans = faceRays(volume.layout.dimensions, source);
-  makeRoom(volume.layout.dimensions, source);
+  makeRoom(roomFor(fans, volume.layout.dimensions));
   pipelines_[scalars ? 1 : 0] = makeComputePipeline(device_, shaders::ray_sweep, {scalars});
-  if (scalars)
-    expandScalars_ = makeComputePipeline(device_, shaders::expand_scalars);
-
+  if (scalars) expandScalars_ = makeComputePipeline(device_, shaders::expand_scalars);
   commands.beginPass(name_);
-  VkDeviceAddress address = depths_.address();
-  for (std::size_t i = 0; i < fans.size(); ++i) {
-    fans_[i] = deviceFan(fans[i], address);
-    if (fans[i].planeCount == 0) continue;
-    recordFan(commands, volume, fans[i], fans_[i], scalars);
-    address += depthBytes(fans[i]);
-    if (source.atInfinity) {
-      fans_.fill(fans_[i]);
-      break;
-    }
-  }
+  recordFans(fans, [&](const FaceRays& fan, const shader::FaceRays& onDevice) { recordFan(commands, volume, fan, onDevice, scalars); });
+}
+
+void RaySweep::record(Commands& commands, const DenseExtinction& grid, const RaySource& source, double spacing) {
+  const std::array<FaceRays, 6> fans = faceRays(grid.dimensions, source, spacing);
+  makeRoom(roomForRays(fans));
+  const Pipeline pipeline = makeComputePipeline(device_, shaders::ray_sweep, {false});
+  commands.beginPass(name_);
+  recordFans(fans, [&](const FaceRays& fan, const shader::FaceRays& onDevice) {
+    recordBox(commands, onDevice,
+              {.begin = 0,
+               .end = fan.planeCount,
+               .first = glm::ivec3(-1),
+               .extent = grid.dimensions + 2,
+               .dimensions = grid.dimensions,
+               .indexToWorld = grid.indexToWorld,
+               .extinction = grid.texels,
+               .table = grid.texels},
+              pipeline);
+  });
 }
 
 RayCodes RaySweep::sweep(const DeviceVolume& volume, const RaySource& source) {

@@ -21,6 +21,25 @@ shader::FaceRays deviceFan(const FaceRays& fan, VkDeviceAddress depths);
 /// Bytes of device memory for the rays of a source.
 std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source);
 
+/// Extinctions per world unit on the device, as single-precision texels, x fastest, with a border of one cell without extinction on all
+/// sides.
+struct DenseExtinction {
+  glm::ivec3 dimensions;    ///< without the border
+  glm::dmat3 indexToWorld;  ///< linear part
+  const TexelView& texels;
+};
+/// Bytes of device memory for the rays of a source through a dense grid, without those of the grid.
+std::uint64_t denseRayBytes(glm::ivec3 dimensions, const RaySource& source, double spacing);
+
+/// Bytes of device memory for the sweep of a source.
+struct RayRoom {
+  std::uint64_t depths = 0;   ///< for the depths of all faces
+  std::uint64_t largest = 0;  ///< the largest part of `depths` that a single face has
+  std::uint64_t slab = 0, carried = 0;
+
+  std::uint64_t bytes() const { return depths + slab + carried; }
+};
+
 /// COMPUTE expand_voxels.comp and ray_sweep.comp: a dispatch of each for every slab of a face.
 class RaySweep {
  public:
@@ -32,6 +51,8 @@ class RaySweep {
   /// With `scalars`, extinction is classified from the volume's scalars after interpolation, and the depths
   /// are those up to the planes of voxels instead of those in front of their layers.
   void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false);
+  /// The same through a grid of extinctions, along rays that are `spacing` cells apart.
+  void record(Commands& commands, const DenseExtinction& grid, const RaySource& source, double spacing);
   /// The rays of the last source, for look-ups, at index 2 axis + (direction > 0). Parallel rays have one
   /// face, which is stored in all six places, so that a look-up need not choose it with the same rounding.
   const std::array<shader::FaceRays, 6>& fans() const { return fans_; }
@@ -42,9 +63,21 @@ class RaySweep {
   RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
 
  private:
-  void makeRoom(glm::ivec3 dimensions, const RaySource& source);
+  /// What the rays of a face march through: planes `begin` to `end` - 1 of the face, in a box that begins at voxel `first`.
+  struct SweptBox {
+    int begin, end;
+    glm::ivec3 first, extent;
+    glm::ivec3 dimensions;    ///< of the volume
+    glm::dmat3 indexToWorld;  ///< linear part, times the unit of extinction
+    const TexelView& extinction;
+    const TexelView& table;  ///< of the transfer function
+  };
+  template <typename RecordFan>
+  void recordFans(const std::array<FaceRays, 6>& fans, const RecordFan& recordFan);
+  void makeRoom(const RayRoom& room);
   void recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
                  const shader::FaceRays& onDevice, bool scalars) const;
+  void recordBox(Commands& commands, const shader::FaceRays& fan, const SweptBox& box, const Pipeline& pipeline) const;
   void recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const;
 
   const Device& device_;

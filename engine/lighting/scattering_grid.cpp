@@ -4,6 +4,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
+#include <tuple>
+#include <utility>
 
 #include "embedded/scattering_collect.h"
 #include "embedded/scattering_combine.h"
@@ -13,6 +15,7 @@
 #include "embedded/scattering_source.h"
 #include "embedded/scattering_sweep.h"
 #include "embedded/scattering_texels.h"
+#include "engine/attenuation/ray_sweep.h"
 #include "engine/core/error.h"
 
 namespace freevoxels {
@@ -21,13 +24,25 @@ namespace {
 
 constexpr int kDirections = 26;
 /// Directions are swept together as far as their light takes no more than this, the memory that a solution needs least.
-constexpr std::uint64_t kBatchBytes = std::uint64_t(2) << 20;
+constexpr std::uint64_t kBatchBytes = std::uint64_t(4) << 20;
 
-int batchOf(std::size_t cells, int channels) {
-  const std::uint64_t bytes = cells * std::size_t(channels) * sizeof(float);
+int batchOf(std::size_t cells) {
+  const std::uint64_t bytes = cells * sizeof(glm::vec4);
   const int most = int(std::clamp<std::uint64_t>(kBatchBytes / bytes, 1, kDirections));
   const int batches = (kDirections + most - 1) / most;
   return (kDirections + batches - 1) / batches;
+}
+
+/// Distance between the rays of lights, in direct cells. Cells of light are means of several of these, and larger than what half of it
+/// shows.
+constexpr double kDirectRaySpacing = 1.0;
+
+/// A light in the index space of direct cells.
+RaySource directSource(const Light& light, const glm::dmat4& indexToWorld, const CellGrid& direct) {
+  const RaySource source = lightSource(light, indexToWorld);
+  if (!light.atInfinity) return {.place = (source.place + 0.5) / double(direct.edge) - 0.5};
+  const glm::dvec3 size = glm::abs(source.place);
+  return {.place = source.place / std::max({size.x, size.y, size.z}), .atInfinity = true};
 }
 
 bool isGreyLight(const Lighting& lighting) {
@@ -40,12 +55,30 @@ Buffer makeBuffer(const Device& device, std::size_t values, const char* name, Me
   return Buffer(device, std::max<std::size_t>(values, 1) * sizeof(float), use, name);
 }
 
+std::pair<Buffer, TexelView> makeTexelBuffer(const Device& device, std::size_t texels, VkFormat format, const char* name) {
+  const std::size_t bytes = format == VK_FORMAT_R32_SFLOAT ? sizeof(float) : sizeof(glm::vec4);
+  Buffer buffer(device, std::max<std::size_t>(texels, 1) * bytes, MemoryUse::Device, name,
+                VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+  TexelView view(device, buffer, format);
+  return {std::move(buffer), std::move(view)};
+}
+
 }  // namespace
 
-std::uint64_t ScatteringGrid::bytes(std::size_t cells, int channels, bool hasPhase) {
-  const std::uint64_t planes = std::uint64_t(channels) * (hasPhase ? 4 : 1);
-  const std::uint64_t vectors = planes * (shader::kMaxBasis + 3), medium = 3 * std::uint64_t(channels);
-  return cells * sizeof(float) * (vectors + medium + std::uint64_t(batchOf(cells, channels) * channels));
+std::uint64_t ScatteringGrid::bytes(glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting& lighting) {
+  constexpr std::uint64_t kChannels = 3;
+  const std::size_t cells = ScatteringMedium::gridOf(dimensions).count();
+  const std::uint64_t planes = kChannels * (lighting.phaseG != 0.0 ? 4 : 1), medium = 3 * kChannels;
+  // 1 + 1/8 + 1/64 + ... = 8/7: with all coarser grids.
+  const std::uint64_t solving =
+      (cells * sizeof(float) * (planes * (shader::kMaxBasis + 3) + medium) + cells * sizeof(glm::vec4) * std::uint64_t(batchOf(cells))) *
+      8 / 7;
+  const CellGrid direct = ScatteringMedium::directGridOf(dimensions);
+  std::uint64_t rays = 0;
+  for (const Light& light : lighting.lights)
+    rays = std::max(rays, denseRayBytes(direct.cells, directSource(light, indexToWorld, direct), kDirectRaySpacing));
+  const glm::u64vec3 padded(direct.cells + 2);
+  return std::max(solving, rays + sizeof(float) * (padded.x * padded.y * padded.z + cells * (planes + medium)));
 }
 
 ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& medium, const Lighting& lighting)
@@ -59,7 +92,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   emits_ = medium.emits();
   lit_ = !lighting.lights.empty();
   depthScale_ = lighting.tint * deltaScaleOf(lighting, medium);
-  batch_ = batchOf(count_, channels_);
+  batch_ = batchOf(count_);
   compileAhead();
 
   std::vector<float> planes;
@@ -74,7 +107,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
       planes.push_back(
           float(lighting.tint[c] * (1.0 - split.forward) * (1.0 - lighting.surface * surfaces[i]) * medium.cells()[i].scattering[c]));
   for (int c = 0; c < channels_ && emits_; ++c) addPlane([&](const auto& cell) { return cell.emission[c]; });
-  mediumPlanes_ = makeBuffer(device, planes.size(), "scattering medium");
+  std::tie(mediumPlanes_, mediumTexels_) = makeTexelBuffer(device, planes.size(), VK_FORMAT_R32_SFLOAT, "scattering medium");
   upload(device, mediumPlanes_, std::as_bytes(std::span(planes)));
 
   const std::vector<glm::dvec3> sky = surroundingRadiances(lighting, directions_, medium.indexToWorld());
@@ -94,8 +127,10 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   direct_ = makeBuffer(device, vectorSize, "direct light of cells");
   if (lit_) makeDirect(lighting);  // with buffers of its own, before there are more
   vectors_ = makeBuffer(device, (kBasis + shader::kMaxBasis + 1) * vectorSize, "scattering vectors");
-  sources_ = makeBuffer(device, vectorSize, "scattering sources");
-  light_ = makeBuffer(device, std::size_t(batch_ * channels_) * count_, "light of directions");
+  std::tie(sources_, sourceTexels_) =
+      makeTexelBuffer(device, std::size_t(moments_) * count_, VK_FORMAT_R32G32B32A32_SFLOAT, "scattering sources");
+  std::tie(light_, lightTexels_) =
+      makeTexelBuffer(device, std::size_t(batch_) * count_, VK_FORMAT_R32G32B32A32_SFLOAT, "light of directions");
   sums_ = makeBuffer(device, std::size_t(shader::kMaxBasis + 2) * shader::kDotGroups, "scattering sums", MemoryUse::Readback);
   Commands commands(device);
   commands.beginPass("scattering");
@@ -105,7 +140,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
 
 /// Asks for all pipelines at once, so that they are compiled at the same time.
 void ScatteringGrid::compileAhead() const {
-  if (lit_) makeComputePipeline(device_, shaders::scattering_direct, constants());
+  if (lit_) makeComputePipeline(device_, shaders::scattering_direct, directConstants(true));
   makeComputePipeline(device_, shaders::scattering_source, constants());
   makeComputePipeline(device_, shaders::scattering_sweep, sweepConstants());
   makeComputePipeline(device_, shaders::scattering_collect, constants());
@@ -114,33 +149,52 @@ void ScatteringGrid::compileAhead() const {
     makeComputePipeline(device_, *shader);
 }
 
+/// The extinctions of direct cells with a border of empty ones.
+Buffer ScatteringGrid::uploadDirectExtinctions() const {
+  const glm::ivec3 cells = medium_.directGrid().cells, size = cells + 2;
+  const std::vector<float> extinctions = medium_.directExtinction();
+  std::vector<float> padded(std::size_t(size.x) * std::size_t(size.y) * std::size_t(size.z), 0.0f);
+  for (int z = 0; z < cells.z; ++z)
+    for (int y = 0; y < cells.y; ++y)
+      std::copy_n(&extinctions[medium_.directGrid().index({0, y, z})], cells.x,
+                  &padded[1 + std::size_t(size.x) * (std::size_t(y) + 1 + std::size_t(size.y) * (std::size_t(z) + 1))]);
+  Buffer buffer(device_, std::span(padded).size_bytes(), MemoryUse::Device, "extinctions of cells",
+                VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  upload(device_, buffer, std::as_bytes(std::span(padded)));
+  return buffer;
+}
+
 void ScatteringGrid::makeDirect(const Lighting& lighting) {
   const CellGrid& fine = medium_.directGrid();
-  const std::vector<float> extinctions = medium_.directExtinction();
-  const Buffer extinction = makeBuffer(device_, extinctions.size(), "extinctions of cells");
-  upload(device_, extinction, std::as_bytes(std::span(extinctions)));
-  const Pipeline pass = makeComputePipeline(device_, shaders::scattering_direct, constants());
-  const std::array<Binding, 2> bindings{&extinction, &direct_};
-  Commands commands(device_);
-  commands.beginPass("scattering");
+  const Buffer extinction = uploadDirectExtinctions();
+  const TexelView texels(device_, extinction, VK_FORMAT_R32_SFLOAT);
+  const Buffer fans(device_, sizeof(shader::DirectFans), MemoryUse::Device, "rays through cells");
+  const glm::dmat3 directToWorld = glm::dmat3(medium_.indexToWorld()) * double(fine.edge);
+  RaySweep rays(device_, "scattering");
   for (std::size_t i = 0; i < lighting.lights.size(); ++i) {
     const Light& light = lighting.lights[i];
-    const RaySource source = lightSource(light, medium_.indexToWorld());
-    const shader::ScatteringDirectPush push{
-        .cells = medium_.grid().cells,
-        .directCells = fine.cells,
-        .ratio = medium_.grid().edge / fine.edge,
-        .atInfinity = light.atInfinity ? 1 : 0,
-        .place = light.atInfinity ? source.place / std::max({std::abs(source.place.x), std::abs(source.place.y), std::abs(source.place.z)})
-                                  : (source.place + 0.5) / double(fine.edge) - 0.5,
-        .radiance = light.intensity / (4.0 * std::numbers::pi) * light.color,
-        .depthScale = depthScale_,
-        .isFirst = i == 0 ? 1 : 0,
-        .directToWorld = glm::dmat3(medium_.indexToWorld()) * double(fine.edge)};
-    commands.dispatchLinear(pass, bindings, push, count_);
-    commands.barrier(kComputeStage, kComputeStage);
+    const RaySource source = directSource(light, medium_.indexToWorld(), fine);
+    Commands commands(device_);
+    rays.record(commands, {.dimensions = fine.cells, .indexToWorld = directToWorld, .texels = texels}, source, kDirectRaySpacing);
+    shader::DirectFans onDevice{};
+    std::ranges::copy(rays.fans(), onDevice.fans);
+    commands.update(fans, onDevice);
+    const std::optional<TexelView>& depths = rays.depthTexels();
+    const std::array<Binding, 4> bindings{&texels, &direct_, &fans, depths ? &*depths : &texels};
+    const shader::ScatteringDirectPush push{.cells = medium_.grid().cells,
+                                            .directCells = fine.cells,
+                                            .ratio = medium_.grid().edge / fine.edge,
+                                            .atInfinity = light.atInfinity ? 1 : 0,
+                                            .place = source.place,
+                                            .radiance = light.intensity / (4.0 * std::numbers::pi) * light.color,
+                                            .depthScale = depthScale_,
+                                            .isFirst = i == 0 ? 1 : 0,
+                                            .directToWorld = directToWorld,
+                                            .rays = addressWords(rays.depths().address())};
+    commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_direct, directConstants(depths.has_value())), bindings, push,
+                            count_);
+    commands.submitAndWait();
   }
-  commands.submitAndWait();
 }
 
 void ScatteringGrid::startFrom(const ScatteringGrid& coarse) {
@@ -163,13 +217,13 @@ void ScatteringGrid::sweep(const Sweep& wanted, const Progress& progress) {
                                              .emission = wanted.emission && emits_ ? scattering + channels_ : -1,
                                              .from = wanted.scattered,
                                              .direct = wanted.direct && lit_ ? 0 : -1};
-  const std::array<Binding, 4> sourceBindings{&mediumPlanes_, &vectors_, &direct_, &sources_};
+  const std::array<Binding, 4> sourceBindings{&mediumPlanes_, &vectors_, &direct_, &sourceTexels_};
   commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_source, constants()), sourceBindings, sources, count_);
   commands.barrier(kComputeStage, kComputeStage);
   const Pipeline sweepPass = makeComputePipeline(device_, shaders::scattering_sweep, sweepConstants());
   const Pipeline collectPass = makeComputePipeline(device_, shaders::scattering_collect, constants());
-  const std::array<Binding, 4> sweepBindings{&mediumPlanes_, &sources_, &sweepDirections_, &light_};
-  const std::array<Binding, 3> collectBindings{&sweepDirections_, &light_, &vectors_};
+  const std::array<Binding, 4> sweepBindings{&mediumTexels_, &sourceTexels_, &sweepDirections_, &lightTexels_};
+  const std::array<Binding, 3> collectBindings{&sweepDirections_, &lightTexels_, &vectors_};
   const glm::ivec3 cells = medium_.grid().cells;
   const std::uint64_t lines = std::max({std::uint64_t(cells.x) * std::uint64_t(cells.y), std::uint64_t(cells.x) * std::uint64_t(cells.z),
                                         std::uint64_t(cells.y) * std::uint64_t(cells.z)});

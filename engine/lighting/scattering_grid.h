@@ -23,7 +23,8 @@ class ScatteringGrid {
 
   /// Computes the direct light of all cells. The solution is 0. `medium` must outlive the grid.
   ScatteringGrid(const Device& device, const ScatteringMedium& medium, const Lighting& lighting);
-  static std::uint64_t bytes(std::size_t cells, int channels, bool hasPhase);
+  /// Bytes of device memory that the grids of a solution take at most while it is computed.
+  static std::uint64_t bytes(glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting& lighting);
 
   std::size_t cells() const { return count_; }
   /// Interpolates the solution from one on cells of twice the edge.
@@ -55,12 +56,14 @@ class ScatteringGrid {
     int from, to;
     float ofFrom, ofSum;
   };
+  Buffer uploadDirectExtinctions() const;
   void makeDirect(const Lighting& lighting);
   void sweep(const Sweep& sweep, const Progress& progress);
   int planes() const { return channels_ * moments_; }
   int vectorLength() const { return planes() * int(count_); }
   Specialisation constants() const { return {std::uint32_t(channels_), moments_ > 1}; }
   Specialisation sweepConstants() const { return {std::uint32_t(channels_), moments_ > 1, tinted_}; }
+  Specialisation directConstants(bool rayTexels) const { return {std::uint32_t(channels_), rayTexels, moments_ > 1}; }
   void compileAhead() const;
 
   const Device& device_;
@@ -73,7 +76,9 @@ class ScatteringGrid {
   bool hasSky_ = false, emits_ = false, lit_ = false;
   glm::dvec3 depthScale_{1.0};  ///< factor of optical depths towards lights
   int batch_;                  ///< directions that are swept at a time
-  Buffer mediumPlanes_, direct_, sources_, light_, vectors_, sweepDirections_, sums_;
+  Buffer mediumPlanes_, direct_, vectors_, sweepDirections_, sums_;
+  Buffer sources_, light_;  ///< vec4 by moment and cell, and by direction of a batch and cell
+  TexelView mediumTexels_, sourceTexels_, lightTexels_;
 };
 
 }  // namespace freevoxels

@@ -154,9 +154,8 @@ bool hasScatteredLight(const Lighting& lighting, bool emits) {
   return lighting.hasIndirectLight() || emits;
 }
 
-std::uint64_t scatteringBytes(glm::ivec3 dimensions, bool hasPhase) {
-  // 1 + 1/8 + 1/64 + ... = 8/7: with all coarser grids.
-  return ScatteringGrid::bytes(ScatteringMedium::gridOf(dimensions).count(), 3, hasPhase) * 8 / 7;
+std::uint64_t scatteringBytes(const Volume& outline, const Lighting& lighting) {
+  return ScatteringGrid::bytes(outline.dimensions, outline.indexToWorld, lighting);
 }
 
 ScatteringSolver::ScatteringSolver(const Device& device, ScatteringMedium medium) : device_(device) {

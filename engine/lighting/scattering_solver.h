@@ -73,6 +73,6 @@ class ScatteringSolver {
 /// emitted.
 bool hasScatteredLight(const Lighting& lighting, bool emits);
 /// Bytes of device memory that a solution takes at most while it is computed.
-std::uint64_t scatteringBytes(glm::ivec3 dimensions, bool hasPhase);
+std::uint64_t scatteringBytes(const Volume& outline, const Lighting& lighting);
 
 }  // namespace freevoxels
