@@ -39,10 +39,11 @@ vec4 mediumAt(int quad, vec4 weights, vec4 extinctions, vec3 toEye) {
 // For classified blocks: source term and extinction are constant in a slice's layer.
 void addSlice(inout Sums sums, LevelGeometry level, Ray ray, int slice) {
   vec4 weights;
-  const int quad = quadAt(level, ray.origin + ray.slope * float(slice), slice, weights);
+  const vec2 position = ray.origin + ray.slope * float(slice);
+  const int quad = quadAt(level, position, slice, weights);
   const float ahead = (float(slice) - ray.eye) * ray.direction;
   const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
-  if (kCube && (inCube == 0 || medium == vec4(0.0))) return;
+  if (kCube && (!isOwn(level, position, slice) || medium == vec4(0.0))) return;
   SegmentLight lit;
   addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, 0.5, lit, ray);
 }
@@ -118,11 +119,11 @@ void addHalves(inout Sums sums, SliceValues last, SliceValues found, LevelGeomet
 // For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
 // light changes along it as the depth towards the eye does, since both are integrals of the same extinction.
 void addBlockStretch(inout Sums sums, inout SliceValues last, LevelGeometry level, Ray ray, int slice, bool within) {
-  SliceValues found = blockValuesAt(level, ray, within ? slice : slice - int(ray.direction), within);
-  const int isOwn = inCube;
+  const int there = within ? slice : slice - int(ray.direction);
+  SliceValues found = blockValuesAt(level, ray, there, within);
   const vec4 medium = 0.5 * (last.medium + found.medium);
   if (kCube) {
-    if (isOwn == 0 || (!kHoldout && medium == vec4(0.0) && (!kEmits || last.emission + found.emission == vec3(0.0)))) {
+    if (!isOwn(level, ray.origin + ray.slope * float(there), there) || (!kHoldout && medium == vec4(0.0) && (!kEmits || last.emission + found.emission == vec3(0.0)))) {
       last = found;
       return;
     }

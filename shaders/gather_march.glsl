@@ -90,9 +90,6 @@ struct Sums {
   vec3 colorTransmittance;  // of light, with kTinted; otherwise that is `transmittance`
 };
 
-// With kCube: 1 if the last quad is in the cube, otherwise 0.
-int inCube = 0;
-
 // The values of a ray on a slice, for the stretch to the next slice. blockValuesAt() sets coverage, medium, emission, depths and the
 // gradient; scalarValuesAt() sets all but emission, and leaves light and gradient to be found later (hasLight, hasGradient).
 struct SliceValues {
@@ -113,7 +110,6 @@ struct Stretch {
   int slice;        // the second of them
   vec4 near, far;   // extinction times colour and extinction of its halves
   float coverage;   // in its middle
-  int inCube;       // on the second slice
   bool adds;        // whether it adds anything to the sums
 };
 
@@ -178,10 +174,7 @@ vec2 sideWeights(float position, int count, out int low) {
 
 // The number of the brick that has the block at a position on the sides and the axis.
 int brickAt(LevelGeometry level, ivec3 block) {
-  if (kCube) {
-    inCube = all(greaterThanEqual(block, level.begin)) && all(lessThan(block, level.end)) ? 1 : 0;
-    block -= level.first;
-  }
+  if (kCube) block -= level.first;
   const ivec3 cell = block >> kBrickLevels;
   return int(texelFetch(brickNumbers, level.firstCell + cell.x * level.cellStrides.x + cell.y * level.cellStrides.y +
                                           cell.z * level.cellStrides.z).x);
@@ -197,6 +190,14 @@ int quadAt(LevelGeometry level, vec2 position, int slice, out vec4 weights) {
   const int brick = brickAt(level, block);
   const ivec3 inBrick = block & (kGatherBrickEdge - 1);
   return ((brick << kBrickLevels | inBrick.y) << kBrickLevels | inBrick.x) << kBrickLevels | inBrick.z;
+}
+
+// Whether the stretch that ends at a position on a slice counts: without kCube always, and else if the quad around it begins in the cube
+// and not in the voxels around that.
+bool isOwn(LevelGeometry level, vec2 position, int slice) {
+  if (!kCube) return true;
+  const ivec3 block = ivec3(clamp(ivec2(floor(position)), ivec2(0), level.dimensions - 1), slice);
+  return all(greaterThanEqual(block, level.begin)) && all(lessThan(block, level.end));
 }
 
 vec3 voxelPosition(Ray ray, float slice) {

@@ -27,9 +27,9 @@ void joinProjected(inout Projected all, Projected more) {
   }
 }
 
-void project(inout Sums sums, float scalar, float coverage, float ahead, Ray ray) {
+void project(inout Sums sums, float scalar, float coverage, float ahead, Ray ray, bool counts) {
   const bool maximum = frame.projection == kMaxIntensity;
-  const bool isSeen = ahead >= 0.0 && (!kHoldout || ahead <= ray.reach) && (!kCube || inCube != 0);
+  const bool isSeen = counts && ahead >= 0.0 && (!kHoldout || ahead <= ray.reach);
   Projected all = projectedOf(sums);
   if (isSeen && coverage >= (maximum ? kMinCoverage : 0.0))
     joinProjected(all, Projected(scalar + 1.0, coverage * scalar, coverage, maximum ? ahead : coverage * ahead));
@@ -46,8 +46,8 @@ void addProjected(inout Sums sums, inout SliceValues last, LevelGeometry level, 
   do {
     if (i <= steps) {
       const float part = float(i) / float(steps), at = float(slice) - ray.direction * (1.0 - part);
-      const vec2 found = scalarBetween(level, ray.origin + ray.slope * at, before, within ? slice : -1, part);
-      project(sums, found.x, found.y, (at - ray.eye) * ray.direction, ray);
+      const vec2 position = ray.origin + ray.slope * at, found = scalarBetween(level, position, before, within ? slice : -1, part);
+      project(sums, found.x, found.y, (at - ray.eye) * ray.direction, ray, isOwn(level, position, within ? slice : before));
       last.coverage = found.y;
     }
     more = ++i <= steps;

@@ -173,7 +173,6 @@ Stretch scalarStretch(SliceValues last, LevelGeometry level, Ray ray, int slice,
   const vec2 middle = scalarBetween(level, ray.origin + ray.slope * (float(slice) - 0.5 * ray.direction), before, within ? slice : -1, 0.5);
   const int there = within ? slice : before;
   SliceValues found = scalarValuesAt(level, ray.origin + ray.slope * float(there), there, ray.toEye);
-  stretch.inCube = inCube;
   if (!within) found.coverage = 0.0;
   SliceValues first, second;
   endsOf(first, second, last, found);
@@ -193,7 +192,7 @@ Stretch scalarStretch(SliceValues last, LevelGeometry level, Ray ray, int slice,
   stretch.far = meanBetween(scalar, integral, medium, second.scalar, second.integral, second.medium);
   stretch.coverage = middle.y;
   stretch.adds = last.coverage + middle.y + found.coverage > 0.0 && stretch.near.a + stretch.far.a > 0.0;
-  if (kCube) stretch.adds = stretch.adds && stretch.inCube != 0;
+  if (kCube) stretch.adds = stretch.adds && isOwn(level, ray.origin + ray.slope * float(there), there);
   stretch.end = found;
   return stretch;
 }
