@@ -165,7 +165,8 @@ void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel
                                .codes = [&](int number, const GatherVolume& inBox) {
                                  return codesOf(*cubeLevel.lights[frame.firstLight + std::size_t(number)], inBox, box.first / kBrick);
                                }};
-  GatherVolume inBox(device, volume, frame.classification, built, times, &light);
+  const Cells met = metCells(volume, frame.classification, 1 << shader::kSkipLevels);
+  GatherVolume inBox(device, frame.classification, built, met, times, &light);
   FrameConstants constants = makeFrameConstants(device, built.volume, table, frame.camera, frame.settings);
   constants.detail.finest = constants.detail.coarsest = 0;
   if (frame.scattered != nullptr) setScattered(constants, *frame.settings.lighting, *frame.scattered);

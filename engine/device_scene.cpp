@@ -27,6 +27,14 @@ const BuiltVolume& DeviceScene::builtWithBlocks(const Progress& progress) {
   return built;
 }
 
+const OccupiedCells& DeviceScene::occupiedCells() {
+  if (!occupiedCells_) {
+    const StageTimer timer(frameTimes, "cells");
+    occupiedCells_.emplace(device, hostVolume, classification);
+  }
+  return *occupiedCells_;
+}
+
 const AttenuationTable& DeviceScene::table(bool withLevels, const Progress& progress) {
   if (!table_) {
     builtWithBlocks(progress);
@@ -64,7 +72,8 @@ void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, Fra
 
 void DeviceScene::prepareOwnLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress) {
   if (!lights_) lights_.emplace(device);
-  constants.setup.lighting = lights_->prepare(built.volume, tableSettings, settings, scalars, frameTimes, progress);
+  const OccupiedCells* const cells = settings.lighting->attenuation == LightAttenuation::Exact ? &occupiedCells() : nullptr;
+  constants.setup.lighting = lights_->prepare(built.volume, tableSettings, settings, scalars, cells, frameTimes, progress);
 }
 
 void DeviceScene::submit(Commands& commands, const Progress& progress) {

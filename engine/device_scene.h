@@ -10,6 +10,7 @@
 #include "engine/lighting/scattering_solver.h"
 #include "engine/memory_planner.h"
 #include "engine/octree/device_volume.h"
+#include "engine/octree/occupied_cells.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/scene/render_settings.h"
 #include "engine/splatting/frame_constants.h"
@@ -40,6 +41,8 @@ class DeviceScene {
   VolumeMemory memory() const;
   /// The volume with its classified blocks, which are made if they do not exist yet.
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
+  /// Where the volume has something to see.
+  const OccupiedCells& occupiedCells();
   /// The attenuation table, with the levels above the voxels if a frame may look them up.
   const AttenuationTable& table(bool withLevels, const Progress& progress = {});
   /// The largest depths of the table, by direction; empty without its levels.
@@ -56,6 +59,7 @@ class DeviceScene {
   void submit(Commands& commands, const Progress& progress = {});
 
  private:
+  std::optional<OccupiedCells> occupiedCells_;
   std::optional<AttenuationTable> table_;
   std::vector<double> largestDepths_;
   std::optional<LightPass> lights_;

@@ -13,7 +13,7 @@ namespace freevoxels {
 
 void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress) {
   try {
-    if (!volume_) volume_.emplace(scene_.device, scene_.hostVolume, scene_.classification, scene_.built, scene_.frameTimes);
+    if (!volume_) volume_.emplace(scene_.device, scene_.classification, scene_.built, scene_.occupiedCells().met(), scene_.frameTimes);
     volume_->prepare(shading);
     GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0, settings.holdout != nullptr,
                              settings.isProjected());

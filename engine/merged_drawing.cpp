@@ -120,7 +120,7 @@ void MergedDrawing::prepareVolume(std::size_t i, const Lighting* lighting, Frame
                                       .others = others};
   std::optional<GatherVolume>& gather = medium.gather;
   try {
-    if (!gather) gather.emplace(device_, scene.hostVolume, scene.classification, scene.built, scene.frameTimes);
+    if (!gather) gather.emplace(device_, scene.classification, scene.built, scene.occupiedCells().met(), scene.frameTimes);
     gather->prepare(shading);
     Commands commands(device_);
     gather->record(commands, shading);

@@ -4,11 +4,13 @@
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
+#define CODE_TEXELS_BINDING 1
+#define CODE_TEXELS_CONSTANT 0
 #include "code_bricks.glsl"
 
 layout(local_size_x = kExpandTile, local_size_y = kExpandTile) in;
 layout(scalar, push_constant) uniform Push { ExpandScalarsPush push; };
-layout(scalar, binding = 0) writeonly buffer BoxScalars { vec4 boxScalars[]; };
+layout(binding = 0, rgba32f) writeonly uniform imageBuffer boxScalars;
 
 void main() {
   const ivec3 place = ivec3(gl_GlobalInvocationID);
@@ -21,5 +23,5 @@ void main() {
     const bool inside = voxel.x + i >= 0 && voxel.x + i < push.dimensions.x;
     quad[i] = scalarOfCode(inside ? bitfieldExtract(pairs[i >> 1], (i & 1) * 16, 16) : 0);
   }
-  boxScalars[place.x + push.extent.x * (place.y + push.extent.y * place.z)] = quad;
+  imageStore(boxScalars, place.x + push.extent.x * (place.y + push.extent.y * place.z), quad);
 }

@@ -134,7 +134,7 @@ class SweptLight::Sweep {
     depths_ = Buffer(device, depthBytes(fan, planes_), MemoryUse::Device, "ray depths");
     frame_ = Buffer(device, sizeof(shader::LightPlanes), MemoryUse::Device, "planes of a light", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
     codes_ = Buffer(device, codeWords() * std::uint64_t(planes_) * sizeof(std::uint32_t), MemoryUse::Device, "codes of light");
-    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars(), isIsland});
+    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars(), isIsland, false});
     lookUp_ = makeComputePipeline(device, shaders::light_planes, {values.areScalars()});
     if (!values.areScalars()) return;
     const std::vector<glm::vec4> texels = values.table().texels(kStoredDepth * level.outline().voxelSize());
@@ -223,7 +223,8 @@ class SweptLight::Sweep {
       commands.copy(depths_, depths_, {.srcOffset = pairBytes * VkDeviceSize(planes_ / 2), .dstOffset = 0, .size = pairBytes});
       commands.barrier(kTransfer, kComputeStage);
     }
-    const std::array<Binding, 3> rays{&slabTexels_, &carried_, values_.areScalars() ? &tableTexels_ : &slabTexels_};
+    const TexelView& table = values_.areScalars() ? tableTexels_ : slabTexels_;
+    const std::array<Binding, 5> rays{&slabTexels_, &carried_, &table, &slabTexels_, &carried_};
     commands.dispatchLinear(sweep_, rays, shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = place},
                             fan_.rays());
     commands.barrier(kComputeStage, kComputeStage);

@@ -17,9 +17,9 @@ std::uint64_t depthBytes(const FaceRays& fan) {
   return fan.rays() * std::uint64_t((fan.planeCount + 1) / 2) * sizeof(std::uint32_t);
 }
 
-/// Bytes of the extinction of a slab, which fit into a processor's cache. A slab exceeds this only if four
-/// planes do.
+/// Bytes of the extinction of a slab, which fit into a processor's cache. More if a slab has kMinSlabPlanes, as each ray begins anew in it.
 constexpr std::uint64_t kSlabBytes = std::uint64_t(8) << 20;
+constexpr std::uint64_t kMinSlabPlanes = 32;
 constexpr int kQuad = 4;  // number of voxels of a row that an invocation of ExpandPass writes
 
 /// Rounds up to a multiple of a quad, negative numbers too.
@@ -60,12 +60,12 @@ int planesPerSlab(const FaceRays& fan, glm::ivec3 dimensions) {
   plane[fan.axis] = 1;
   const std::uint64_t bytes = SlabBox{.first = {}, .extent = plane}.bytes();
   const std::uint64_t most = std::uint64_t(quadsUp(fan.planeCount));
-  return int(std::clamp<std::uint64_t>(kSlabBytes / bytes, kQuad, most)) / kQuad * kQuad;
+  return int(std::min(std::max(kSlabBytes / bytes, kMinSlabPlanes), most)) / kQuad * kQuad;
 }
 
 /// Without a slab.
 RayRoom roomForRays(const std::array<FaceRays, 6>& fans) {
-  RayRoom room{.slab = sizeof(float), .carried = sizeof(float)};  // bindings need buffers even if no face has rays
+  RayRoom room{.slab = sizeof(glm::vec4), .carried = sizeof(float)};  // bindings need buffers even if no face has rays
   for (const FaceRays& fan : fans) {
     if (fan.planeCount == 0) continue;
     room.depths += depthBytes(fan);
@@ -137,8 +137,11 @@ void RaySweep::makeRoom(const RayRoom& room) {
       depthTexels_.emplace(device_, depths_, VK_FORMAT_R32_UINT);
   }
   growBuffer(device_, carried_, room.carried, "ray depths between slabs");
-  if (growBuffer(device_, slab_, room.slab, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
+  if (growBuffer(device_, slab_, room.slab, "extinction around rays",
+                 VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT)) {
     slabTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_SFLOAT);
+    slabQuads_ = TexelView(device_, slab_, VK_FORMAT_R32G32B32A32_SFLOAT);
+  }
 }
 
 /// Expands the extinction of a box of voxels from the scalars.
@@ -146,13 +149,15 @@ void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm
   const glm::ivec3 quads(extent.x / kQuad, extent.y, extent.z);
   const shader::ExpandScalarsPush push{
       .first = first, .extent = quads, .dimensions = volume.layout.dimensions, .scalars = volume.scalarBricks->onDevice()};
-  const std::array<Binding, 1> bindings{&slab_};
-  commands.dispatch(expandScalars_, bindings, push, quads);
+  const bool texels = volume.scalarBricks->codeTexels.has_value();
+  const std::array<Binding, 3> bindings{&slabQuads_, texels ? &*volume.scalarBricks->codeTexels : &slabTexels_,
+                                        texels ? &*volume.scalarBricks->numberTexels : &slabTexels_};
+  commands.dispatch(makeComputePipeline(device_, shaders::expand_scalars, {texels}), bindings, push, quads);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
-void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
-                         const shader::FaceRays& onDevice, bool scalars) const {
+void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan, const shader::FaceRays& onDevice,
+                         bool scalars, const OccupiedCells* cells) const {
   const glm::ivec3 dimensions = volume.layout.dimensions;
   // Extinctions of the transfer table are in another unit.
   const double unit = scalars ? 1.0 / (kStoredDepth * volume.voxelSize) : 1.0;
@@ -172,12 +177,13 @@ void RaySweep::recordFan(Commands& commands, const DeviceVolume& volume, const F
                .dimensions = dimensions,
                .indexToWorld = unit * glm::dmat3(volume.indexToWorld),
                .extinction = slabTexels_,
-               .table = scalars ? volume.scalarBricks->tableTexels : slabTexels_},
-              pipelines_[scalars ? 1 : 0]);
+               .table = scalars ? volume.scalarBricks->tableTexels : slabTexels_,
+               .cells = cells},
+              scalars);
   }
 }
 
-void RaySweep::recordBox(Commands& commands, const shader::FaceRays& fan, const SweptBox& box, const Pipeline& pipeline) const {
+void RaySweep::recordBox(Commands& commands, const shader::FaceRays& fan, const SweptBox& box, bool scalars) const {
   const int sideA = (fan.axis + 1) % 3, sideB = (fan.axis + 2) % 3;
   const glm::ivec3 strides(1, box.extent.x, box.extent.x * box.extent.y);
   glm::ivec3 origin = -box.first;
@@ -192,8 +198,11 @@ void RaySweep::recordBox(Commands& commands, const shader::FaceRays& fan, const 
                                            .planeStride = fan.direction * strides[fan.axis],
                                            .strideA = strides[sideA],
                                            .strideB = strides[sideB]}};
-  const std::array<Binding, 3> bindings{&box.extinction, &carried_, &box.table};
-  commands.dispatchLinear(pipeline, bindings, push, std::uint64_t(fan.rayCount.x) * std::uint64_t(fan.rayCount.y));
+  const OccupiedCells* const cells = box.cells;
+  const std::array<Binding, 5> bindings{&box.extinction, &carried_, &box.table, cells != nullptr ? &cells->near() : &box.extinction,
+                                        cells != nullptr ? &cells->dimensions() : &carried_};
+  commands.dispatchLinear(makeComputePipeline(device_, shaders::ray_sweep, {scalars, false, cells != nullptr}), bindings, push,
+                          std::uint64_t(fan.rayCount.x) * std::uint64_t(fan.rayCount.y));
   commands.barrier(kComputeStage, kComputeStage);
 }
 
@@ -213,19 +222,17 @@ void RaySweep::recordFans(const std::array<FaceRays, 6>& fans, const RecordFan& 
   }
 }
 
-void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars) {
+void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars, const OccupiedCells* cells) {
   const std::array<FaceRays, 6> fans = faceRays(volume.layout.dimensions, source);
   makeRoom(roomFor(fans, volume.layout.dimensions));
-  pipelines_[scalars ? 1 : 0] = makeComputePipeline(device_, shaders::ray_sweep, {scalars});
-  if (scalars) expandScalars_ = makeComputePipeline(device_, shaders::expand_scalars);
   commands.beginPass(name_);
-  recordFans(fans, [&](const FaceRays& fan, const shader::FaceRays& onDevice) { recordFan(commands, volume, fan, onDevice, scalars); });
+  recordFans(fans,
+             [&](const FaceRays& fan, const shader::FaceRays& onDevice) { recordFan(commands, volume, fan, onDevice, scalars, cells); });
 }
 
 void RaySweep::record(Commands& commands, const DenseExtinction& grid, const RaySource& source, double spacing) {
   const std::array<FaceRays, 6> fans = faceRays(grid.dimensions, source, spacing);
   makeRoom(roomForRays(fans));
-  const Pipeline pipeline = makeComputePipeline(device_, shaders::ray_sweep, {false});
   commands.beginPass(name_);
   recordFans(fans, [&](const FaceRays& fan, const shader::FaceRays& onDevice) {
     recordBox(commands, onDevice,
@@ -236,14 +243,15 @@ void RaySweep::record(Commands& commands, const DenseExtinction& grid, const Ray
                .dimensions = grid.dimensions,
                .indexToWorld = grid.indexToWorld,
                .extinction = grid.texels,
-               .table = grid.texels},
-              pipeline);
+               .table = grid.texels,
+               .cells = nullptr},
+              false);
   });
 }
 
-RayCodes RaySweep::sweep(const DeviceVolume& volume, const RaySource& source) {
+RayCodes RaySweep::sweep(const DeviceVolume& volume, const RaySource& source, bool scalars, const OccupiedCells* cells) {
   Commands commands(device_);
-  record(commands, volume, source);
+  record(commands, volume, source, scalars, cells);
   commands.submitAndWait();
   const std::array<FaceRays, 6> fans = faceRays(volume.layout.dimensions, source);
   RayCodes codes;

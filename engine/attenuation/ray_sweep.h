@@ -9,6 +9,7 @@
 
 #include "engine/octree/device_volume.h"
 #include "engine/octree/occupancy.h"
+#include "engine/octree/occupied_cells.h"
 #include "engine/scene/source_rays.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/interface.h"
@@ -50,7 +51,9 @@ class RaySweep {
   /// necessary; fails with ErrorKind::OutOfMemory if there is not enough.
   /// With `scalars`, extinction is classified from the volume's scalars after interpolation, and the depths
   /// are those up to the planes of voxels instead of those in front of their layers.
-  void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false);
+  /// Where `cells` is given, rays do not look at the voxels of cells that are far from it, for the same bits in less time.
+  void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false,
+              const OccupiedCells* cells = nullptr);
   /// The same through a grid of extinctions, along rays that are `spacing` cells apart.
   void record(Commands& commands, const DenseExtinction& grid, const RaySource& source, double spacing);
   /// The rays of the last source, for look-ups, at index 2 axis + (direction > 0). Parallel rays have one
@@ -60,7 +63,7 @@ class RaySweep {
   const Buffer& depths() const { return depths_; }
   const std::optional<TexelView>& depthTexels() const { return depthTexels_; }
   /// Sweeps and copies the depths to the host, for validation. Blocks until the device is done.
-  RayCodes sweep(const DeviceVolume& volume, const RaySource& source);
+  RayCodes sweep(const DeviceVolume& volume, const RaySource& source, bool scalars = false, const OccupiedCells* cells = nullptr);
 
  private:
   /// What the rays of a face march through: planes `begin` to `end` - 1 of the face, in a box that begins at voxel `first`.
@@ -70,23 +73,22 @@ class RaySweep {
     glm::ivec3 dimensions;    ///< of the volume
     glm::dmat3 indexToWorld;  ///< linear part, times the unit of extinction
     const TexelView& extinction;
-    const TexelView& table;  ///< of the transfer function
+    const TexelView& table;      ///< of the transfer function
+    const OccupiedCells* cells;  ///< null if it is not known
   };
   template <typename RecordFan>
   void recordFans(const std::array<FaceRays, 6>& fans, const RecordFan& recordFan);
   void makeRoom(const RayRoom& room);
-  void recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan,
-                 const shader::FaceRays& onDevice, bool scalars) const;
-  void recordBox(Commands& commands, const shader::FaceRays& fan, const SweptBox& box, const Pipeline& pipeline) const;
+  void recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan, const shader::FaceRays& onDevice, bool scalars,
+                 const OccupiedCells* cells) const;
+  void recordBox(Commands& commands, const shader::FaceRays& fan, const SweptBox& box, bool scalars) const;
   void recordScalars(Commands& commands, const DeviceVolume& volume, glm::ivec3 first, glm::ivec3 extent) const;
 
   const Device& device_;
   const char* name_;
   ExpandPass expand_;
-  std::array<Pipeline, 2> pipelines_;  ///< without and with `scalars`
-  Pipeline expandScalars_;
   Buffer slab_;  ///< float: extinction of the voxels of a slab
-  TexelView slabTexels_;
+  TexelView slabTexels_, slabQuads_;
   Buffer carried_;  ///< float, by ray: optical depth between slabs
   Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1, by face, k and ray
   std::optional<TexelView> depthTexels_;

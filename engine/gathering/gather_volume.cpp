@@ -49,15 +49,14 @@ float meanLayer(const DeviceVolume& volume) {
 
 }  // namespace
 
-GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Classification& classification,
-                           const BuiltVolume& built, std::vector<StageTime>& times, const SurroundingLight* surroundings)
+GatherVolume::GatherVolume(const Device& device, const Classification& classification, const BuiltVolume& built, const Cells& met,
+                           std::vector<StageTime>& times, const SurroundingLight* surroundings)
     : device_(device),
-      volume_(volume),
       classification_(classification),
       built_(built),
       surroundings_(surroundings),
       frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame") {
-  makeBricks(times);
+  makeBricks(met, times);
   const std::uint32_t bricks = firstBricks_.back();
   const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
   inPieces_ = quads > device.limits().maxTexelBufferElements || quads * sizeof(glm::uvec4) > device.maximumAllocation();
@@ -70,11 +69,11 @@ GatherVolume::GatherVolume(const Device& device, const Volume& volume, const Cla
 /// Finds the cells of the octree that are bricks, and those that rays skip. A position in a cell stays for
 /// one more edge in that cell and its next neighbours along the positive axes, so these decide. The light of
 /// a surface is looked up 2.5 blocks outside of it, so bricks extend one cell farther, on all sides.
-void GatherVolume::makeBricks(std::vector<StageTime>& times) {
+void GatherVolume::makeBricks(const Cells& metCells, std::vector<StageTime>& times) {
   const StageTimer timer(times, "bricks");
   const HierarchyLayout& hierarchy = built_.volume.hierarchy;
   const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
-  Cells cells = metCells(volume_, classification_, 1 << finest);
+  Cells cells = metCells;                               // one cell if the volume is smaller than a cell
   std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level, starting above the finest
   for (int level = finest; level <= top; ++level) {
     met.push_back(spread(cells, 0, 1));

@@ -42,9 +42,10 @@ struct ShadowingVolume {
 /// axes differ from those of the previous one. Belongs to one volume, which must outlive it.
 class GatherVolume {
  public:
-  /// Finds the bricks and adds the time of that to `times`. The other arguments must outlive this object.
-  /// With `surroundings`, lights at samples are those, and only voxels are read. Fails with ErrorKind::OutOfMemory.
-  GatherVolume(const Device& device, const Volume& volume, const Classification& classification, const BuiltVolume& built,
+  /// Finds the bricks, around the cells `met` of 1 << shader::kSkipLevels voxels (metCells), and adds the time of that to `times`. The
+  /// other arguments must outlive this object. With `surroundings`, lights at samples are those, and only voxels are read. Fails with
+  /// ErrorKind::OutOfMemory.
+  GatherVolume(const Device& device, const Classification& classification, const BuiltVolume& built, const Cells& met,
                std::vector<StageTime>& times, const SurroundingLight* surroundings = nullptr);
 
   /// The input of shading a frame. `lighting` and `lights` are null without lighting.
@@ -137,7 +138,7 @@ class GatherVolume {
   /// Whether the frame reads a level, or this one, that is not among the levels `made`, a bit for each.
   bool lacksLevels(std::uint32_t made) const { return (wantedLevels_ & ~made) != 0; }
   bool lacksLevel(std::uint32_t made, int level) const { return ((wantedLevels_ & ~made) >> level & 1u) != 0; }
-  void makeBricks(std::vector<StageTime>& times);
+  void makeBricks(const Cells& metCells, std::vector<StageTime>& times);
   void makeSources();
   void prepareSampled(const Lighting* lighting);
   void describeLights(shader::GatherFrame& frame) const;
@@ -163,7 +164,6 @@ class GatherVolume {
   void recordGradients(Commands& commands);
 
   const Device& device_;
-  const Volume& volume_;
   const Classification& classification_;
   const BuiltVolume& built_;
   const SurroundingLight* surroundings_;
@@ -197,7 +197,7 @@ class GatherVolume {
   std::vector<Buffer> others_;  ///< shader::OtherVolume of Shading::others
   std::uint32_t lightLevels_ = 0;
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
-  TexelView gradientTexels_;  ///< of gradients_, unless quads are in pieces
+  TexelView gradientTexels_;  ///< of gradients_; if quads are in pieces of its first word
   std::uint32_t gradientLevels_ = 0;
 };
 

@@ -67,33 +67,33 @@ void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, Direct
   }
 }
 
-void LightPass::setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting, bool scalars,
+void LightPass::setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting, bool scalars, const OccupiedCells* cells,
                         std::vector<shader::Light>& lights) {
   const std::vector<RaySource> sources = sourcesOf(lighting, volume);
   checkRaysFit(device_, rayMemory(volume.layout.dimensions, sources));
   for (std::size_t i = 0; i < lights.size(); ++i) {
     RaySweep& sweep = rays_.emplace_back(device_, "light sweep");
-    sweep.record(commands, volume, sources[i], scalars);
+    sweep.record(commands, volume, sources[i], scalars, cells);
     std::ranges::copy(sweep.fans(), lights[i].fans);
   }
 }
 
-std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolume& volume, DirectionSet set,
-                                            const Lighting& lighting, bool scalars) {
+std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolume& volume, DirectionSet set, const Lighting& lighting,
+                                            bool scalars, const OccupiedCells* cells) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
   std::vector<shader::Light> lights;
   for (const Light& light : lighting.lights)
     lights.push_back(deviceLight(light, lightSource(light, volume.indexToWorld), middle));
   rays_.clear();
   if (lighting.attenuation == LightAttenuation::Exact)
-    setRays(commands, volume, lighting, scalars, lights);
+    setRays(commands, volume, lighting, scalars, cells, lights);
   else
     setBeyond(commands, volume, set, lighting, lights);
   return lights;
 }
 
-shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const TableSettings& table,
-                                         const FrameSettings& settings, bool scalars, std::vector<StageTime>& times,
+shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const TableSettings& table, const FrameSettings& settings,
+                                         bool scalars, const OccupiedCells* cells, std::vector<StageTime>& times,
                                          const Progress& progress) {
   const Lighting& lighting = *settings.lighting;
   const DirectionSet set = table.directions;
@@ -102,7 +102,7 @@ shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const Table
   if (!stand) {
     placed_.reset();  // invalid until the new lights are complete
     Commands commands(device_);
-    const std::vector<shader::Light> lights = place(commands, volume, set, lighting, scalars);
+    const std::vector<shader::Light> lights = place(commands, volume, set, lighting, scalars, cells);
     commands.submitAndWait(progress);
     addTimes(times, commands.times());
     const auto bytes = std::as_bytes(std::span(lights));

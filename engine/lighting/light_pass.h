@@ -28,22 +28,21 @@ class LightPass {
   explicit LightPass(const Device& device) : device_(device), beyond_(device) {}
 
   /// Prepares the lights of a frame whose attenuation is not Auto, without its scattered light. With `scalars`, rays are swept through the
-  /// volume's scalars, otherwise through its classified voxels. Blocks until the device is done and adds the
-  /// times to `times`; no frame may be in progress. An exception of `progress` abandons the work.
-  shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table,
-                                const FrameSettings& settings, bool scalars, std::vector<StageTime>& times,
-                                const Progress& progress);
+  /// volume's scalars, otherwise through its classified voxels; they pass over what is far from `cells`, where that is given. Blocks
+  /// until the device is done and adds the times to `times`; no frame may be in progress. An exception of `progress` abandons the work.
+  shader::FrameLighting prepare(const DeviceVolume& volume, const TableSettings& table, const FrameSettings& settings, bool scalars,
+                                const OccupiedCells* cells, std::vector<StageTime>& times, const Progress& progress);
   /// shader::Light of each light of the last frame.
   const Buffer& lights() const { return lights_; }
   /// The rays of a light of the last frame, with LightAttenuation::Exact.
   const RaySweep& rays(int light) const { return rays_[std::size_t(light)]; }
 
  private:
-  std::vector<shader::Light> place(Commands& commands, const DeviceVolume& volume, DirectionSet set,
-                                   const Lighting& lighting, bool scalars);
+  std::vector<shader::Light> place(Commands& commands, const DeviceVolume& volume, DirectionSet set, const Lighting& lighting, bool scalars,
+                                   const OccupiedCells* cells);
   void setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set, const Lighting& lighting,
                  std::vector<shader::Light>& lights);
-  void setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting, bool scalars,
+  void setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting, bool scalars, const OccupiedCells* cells,
                std::vector<shader::Light>& lights);
 
   const Device& device_;

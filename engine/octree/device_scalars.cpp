@@ -39,6 +39,10 @@ DeviceScalars uploadScalars(const Device& device, const Volume& volume, const Tr
   result.brickNumbers = make(std::as_bytes(std::span(numbers)), "scalar brick numbers");
   result.table = make(std::as_bytes(std::span(texels)), "transfer function table");
   result.tableTexels = TexelView(device, result.table);
+  if (std::max(codes.size() / 2, numbers.size()) <= device.limits().maxTexelBufferElements) {
+    result.codeTexels.emplace(device, result.codes, VK_FORMAT_R32_UINT);
+    result.numberTexels.emplace(device, result.brickNumbers, VK_FORMAT_R32_UINT);
+  }
   return result;
 }
 

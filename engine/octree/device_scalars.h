@@ -2,6 +2,7 @@
 // A volume's scalars on the device, for classification after interpolation.
 
 #include <glm/glm.hpp>
+#include <optional>
 
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
@@ -16,6 +17,8 @@ struct DeviceScalars {
   Buffer brickNumbers;  ///< uint32: number of the brick of each cell, x fastest
   Buffer table;         ///< TransferTable::texels()
   TexelView tableTexels;
+  /// Words of two codes, and brick numbers. Do not exist where the device cannot view so many.
+  std::optional<TexelView> codeTexels, numberTexels;
   glm::ivec3 cells{0};   ///< number of bricks along the axes
   glm::ivec3 corner{0};  ///< position of the box's voxel (0,0,0) in its brick
 

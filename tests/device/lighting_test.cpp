@@ -41,6 +41,49 @@ class LightingTest : public SplatTest {
   }
 };
 
+/// Small balls far from each other, whose scalars are 0.9 in a box of 0.2: a function that shows 0.5 alone shows their shells.
+Volume balls(glm::ivec3 dimensions, double beside) {
+  return makeVolume(dimensions, shearedTransform(dimensions), [&](int x, int y, int z) {
+    for (const glm::dvec3 middle : {glm::dvec3(9.0, 30.0, 12.0), glm::dvec3(47.0, 8.0, 40.0), glm::dvec3(30.0, 33.0, 61.0)})
+      if (glm::distance(glm::dvec3(x, y, z), middle) < 5.5) return 0.9;
+    return beside;
+  });
+}
+
+/// Sources of all kinds, one of them in a ball's shadow inside the volume; without cells all rays look at all voxels.
+TEST_F(LightingTest, RaysThatPassOverEmptyCellsHaveTheSameBits) {
+  const glm::ivec3 dimensions(61, 45, 70);
+  const Volume medium = balls(dimensions, 0.0), scan = balls(dimensions, 0.2);
+  const Classification density{.densityScale = 0.4};
+  Classification shells;
+  shells.transferFunction = TransferFunction{.opacity = {{0.0f, 0.0f}, {0.4f, 0.0f}, {0.5f, 0.3f}, {0.6f, 0.0f}, {1.0f, 0.0f}},
+                                             .color = {{0.0f, glm::vec3(1.0f)}},
+                                             .unitDistance = scan.voxelSize()};
+  shells.order = ClassificationOrder::Post;
+  using Case = std::pair<const Volume*, const Classification*>;
+  for (const auto& [volume, classification] : {Case(&medium, &density), Case(&scan, &shells)}) {
+    std::vector<StageTime> times;
+    const BuiltVolume built = buildVolume(device(), *volume, *classification, times);
+    const OccupiedCells cells(device(), *volume, *classification);
+    const bool scalars = built.volume.scalarBricks.has_value();
+    EXPECT_EQ(scalars, volume == &scan);
+    const auto nearOnes = std::ranges::count(spread(cells.met(), -1, 1).values, 1);
+    EXPECT_GT(nearOnes, 0);
+    EXPECT_LT(nearOnes, 3 * std::ptrdiff_t(cells.met().values.size()) / 4);
+    for (const RaySource& source :
+         {RaySource{.place = {1.0, 0.3, -0.8}, .atInfinity = true}, RaySource{.place = {0.0, 0.0, 1.0}, .atInfinity = true},
+          RaySource{.place = {-20.0, 60.0, 30.0}}, RaySource{.place = {25.3, 20.1, 33.7}}}) {
+      RaySweep sweep(device());
+      const RayCodes all = sweep.sweep(built.volume, source, scalars), passing = sweep.sweep(built.volume, source, scalars, &cells);
+      EXPECT_EQ(all, passing);
+      std::uint16_t largest = 0;
+      for (const std::vector<std::uint16_t>& face : all)
+        if (!face.empty()) largest = std::max(largest, *std::ranges::max_element(face));
+      EXPECT_GT(largest, 0);
+    }
+  }
+}
+
 TEST_F(LightingTest, EveryKindOfLightMatchesTheReference) {
   const Volume v = volume(true);
   for (const Composite composite : {Composite::Normalised, Composite::Additive})

@@ -7,6 +7,7 @@
 
 #include "engine/gathering/gather_pass.h"
 #include "engine/gathering/gather_stages.h"
+#include "engine/octree/occupied_cells.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/renderer.h"
 #include "engine/validation/gather_checks.h"
@@ -47,7 +48,8 @@ struct SteppedGather : GatherOutputs {
     for (int level = 0; built.hasBlocks() && level <= constants.detail.coarsest; ++level)
       medium.push_back(downloadMedium(device, built.volume, level));
     if (alterMedium) alterMedium(device, built);
-    volume.emplace(device, source, classification, built, times);  // what was altered for another frame is not kept
+    const Cells met = metCells(source, classification, OccupiedCells::kEdge);
+    volume.emplace(device, classification, built, met, times);  // what was altered for another frame is not kept
     volume->prepare(shading);
     run([&](Commands& commands) { volume->record(commands, shading); });
     volume->describe(rays);
