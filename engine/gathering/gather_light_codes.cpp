@@ -142,18 +142,20 @@ void GatherVolume::recordGradients(Commands& commands) {
   if (gradients_.bytes() == 0) {
     const std::uint64_t blocks = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
     gradients_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "gradients of surfaces",
-                        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
-    if (!inPieces()) gradientTexels_ = TexelView(device_, gradients_, VK_FORMAT_R32_UINT);
+                        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+    gradientTexels_ = TexelView(device_, gradients_, VK_FORMAT_R32_UINT, inPieces() ? sizeof(std::uint32_t) : VK_WHOLE_SIZE);
   }
   commands.beginPass("surface gradients");
   if (gradientLevels_ == 0) commands.clear(gradients_);  // of the empty brick
   const DeviceVolume& volume = built_.volume;
-  const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
+  const TexelView* const codes = hasScalars() && volume.scalarBricks->codeTexels ? &*volume.scalarBricks->codeTexels : nullptr;
+  const std::array<Binding, 5> bindings{&brickCellTexels_, &volume.occupancyTexels, codes != nullptr ? codes : &brickCellTexels_,
+                                        codes != nullptr ? &*volume.scalarBricks->numberTexels : &brickCellTexels_, &gradientTexels_};
   for (int level = 0; level <= volume.hierarchy.top(); ++level) {
     const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
     if (!lacksLevel(gradientLevels_, level) || count == 0) continue;
     const auto scalars = scalarCodes(level);
-    const Pipeline pass = makeComputePipeline(device_, shaders::surface_gradients, {scalars.has_value()});
+    const Pipeline pass = makeComputePipeline(device_, shaders::surface_gradients, {scalars.has_value(), !inPieces(), codes != nullptr});
     const shader::SurfaceGradientsPush push{.level = volume.onDevice(level),
                                             .firstBrick = first,
                                             .count = count,
