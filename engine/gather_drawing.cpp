@@ -40,12 +40,13 @@ GatherDrawing::Frame GatherDrawing::prepare(const Camera& camera, const FrameSet
   const DeviceVolume& onDevice = scene_.built.volume;
   const auto constantsNow = [&] { return makeFrameConstants(scene_.device, onDevice, scene_.tableSettings, camera, settings); };
   FrameConstants& constants = frame.constants = constantsNow();
-  if ((shadesVoxels || constants.detail.coarsest > 0) && !scene_.built.hasBlocks()) {
+  frame.lattice = makeGatherFrame(onDevice, camera, settings, constants.detail, constants.endTransmittance);
+  if ((shadesVoxels || frame.lattice.coarsest > 0) && !scene_.built.hasBlocks()) {
     scene_.builtWithBlocks(progress);
     constants = constantsNow();  // with the blocks' addresses
   }
-  frame.lattice = makeGatherFrame(onDevice, camera, settings, constants.detail, constants.endTransmittance);
   constants.detail.finest = frame.lattice.finest;
+  constants.detail.coarsest = frame.lattice.coarsest;
   const bool readsTable = constants.lightsReadTable && !lightsSamples;
   const AttenuationTable* const table = readsTable ? &scene_.table(constants.detail.coarsest > 0, progress) : nullptr;
   if (lighting != nullptr) scene_.prepareLights(settings, onDevice.scalarBricks.has_value() && lightsSamples, constants, progress);

@@ -84,13 +84,14 @@ void MergedDrawing::prepareRays(Medium& medium, const Camera& camera, Frame& fra
   scene.frameTimes.clear();
   const auto constantsNow = [&] { return makeFrameConstants(device_, scene.built.volume, scene.tableSettings, camera, frame.settings); };
   FrameConstants constants = constantsNow();
-  if (constants.detail.coarsest > 0 && !scene.built.hasBlocks()) {
+  frame.rays.push_back(makeGatherFrame(scene.built.volume, camera, frame.settings, constants.detail, constants.endTransmittance));
+  if (frame.rays.back().coarsest > 0 && !scene.built.hasBlocks()) {
     scene.builtWithBlocks(progress);
     constants = constantsNow();  // with the blocks' addresses
   }
-  frame.rays.push_back(makeGatherFrame(scene.built.volume, camera, frame.settings, constants.detail, constants.endTransmittance));
   frame.rays.back().holdout = pass_.pass().holdOut(frame.settings.holdout);
   constants.detail.finest = frame.rays.back().finest;
+  constants.detail.coarsest = frame.rays.back().coarsest;
   frame.constants.push_back(std::move(constants));
 }
 

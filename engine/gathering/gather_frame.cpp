@@ -321,6 +321,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
       setSlices(frame.axes[axis], axis, sign, volume.hierarchy, slabs, seenInImage, orthographic);
   }
   while (frame.finest < frame.coarsest && !readsLevel(frame, seenInImage, frame.finest)) ++frame.finest;
+  while (frame.finest < frame.coarsest && !readsLevel(frame, seenInImage, frame.coarsest)) --frame.coarsest;
   return frame;
 }
 

@@ -9,6 +9,9 @@ namespace {
 
 /// Distance in voxels that rays extend beyond the outermost voxels, for the interpolation there.
 constexpr double kMargin = 1.5;
+/// Distance between rays in voxels. At half a voxel an interpolated depth is as good as one summed up for the
+/// voxel alone (within 0.5 dB of the image); at a whole voxel images of thin shells lose 3 dB.
+constexpr double kFinestSpacing = 0.5;
 /// Largest number of rays of a face for every line of voxels along its axis.
 constexpr double kMaxRaysPerLine = 6.0;
 
@@ -18,13 +21,13 @@ struct Interval {
 
 /// Chooses the rays that cross `covered`, the part of the farthest plane that the volume projects to. They
 /// are placed symmetrically about the middle of the volume, so that a mirrored volume has mirrored rays.
-void placeRays(FaceRays& fan, const std::array<Interval, 2>& covered, glm::ivec3 dimensions, double spacing) {
+void placeRays(FaceRays& fan, const std::array<Interval, 2>& covered, glm::ivec3 dimensions) {
   const auto length = [&](int side) {
     return covered[std::size_t(side)].high - covered[std::size_t(side)].low;
   };
   const glm::ivec2 across(dimensions[(fan.axis + 1) % 3], dimensions[(fan.axis + 2) % 3]);
   const double mostRays = kMaxRaysPerLine * (across.x + 4.0) * (across.y + 4.0);
-  fan.spacing = std::max(spacing, std::sqrt(length(0) * length(1) / mostRays));
+  fan.spacing = std::max(kFinestSpacing, std::sqrt(length(0) * length(1) / mostRays));
   for (int side = 0; side < 2; ++side) {
     const auto [low, high] = covered[std::size_t(side)];
     // If rays are half a voxel apart, every second ray passes through the voxels of the farthest plane; along
@@ -35,7 +38,7 @@ void placeRays(FaceRays& fan, const std::array<Interval, 2>& covered, glm::ivec3
   }
 }
 
-FaceRays parallelFan(glm::ivec3 dimensions, glm::dvec3 fromSource, double spacing) {
+FaceRays parallelFan(glm::ivec3 dimensions, glm::dvec3 fromSource) {
   const int index = fanIndex(fromSource), axis = index / 2;
   FaceRays fan{.axis = axis, .direction = index % 2 == 0 ? -1 : 1, .planeCount = dimensions[axis]};
   const int last = dimensions[axis] - 1;
@@ -49,12 +52,12 @@ FaceRays parallelFan(glm::ivec3 dimensions, glm::dvec3 fromSource, double spacin
     covered[std::size_t(side)] = {std::min(0.0, -drift) - kMargin,
                                   dimensions[other] - 1 + std::max(0.0, -drift) + kMargin};
   }
-  placeRays(fan, covered, dimensions, spacing);
+  placeRays(fan, covered, dimensions);
   return fan;
 }
 
 /// The rays of one face; none if no voxel of the volume lies on it.
-FaceRays fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int direction, double spacing) {
+FaceRays fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int direction) {
   FaceRays fan{.axis = axis, .direction = direction};
   const double last = dimensions[axis] - 1;
   const double first = direction > 0 ? std::max(std::floor(source[axis]) + 1.0, 0.0)
@@ -74,7 +77,7 @@ FaceRays fanFrom(glm::dvec3 source, glm::ivec3 dimensions, int axis, int directi
                                   source[other] + std::min(highest, radius + kMargin)};
     if (covered[std::size_t(side)].low >= covered[std::size_t(side)].high) return fan;
   }
-  placeRays(fan, covered, dimensions, spacing);
+  placeRays(fan, covered, dimensions);
   fan.firstPlane = int(first);
   fan.planeCount = int(std::abs(fan.farthest - first)) + 1;
   fan.convergence = 1.0 / (fan.farthest - source[axis]);
@@ -100,15 +103,16 @@ int fanIndex(glm::dvec3 fromSource) {
   return 2 * axis + (fromSource[axis] > 0.0 ? 1 : 0);
 }
 
-std::array<FaceRays, 6> faceRays(glm::ivec3 dimensions, const RaySource& source, double spacing) {
+std::array<FaceRays, 6> faceRays(glm::ivec3 dimensions, const RaySource& source) {
   std::array<FaceRays, 6> fans;
   if (source.atInfinity) {
-    fans[std::size_t(fanIndex(-source.place))] = parallelFan(dimensions, -source.place, spacing);
+    fans[std::size_t(fanIndex(-source.place))] = parallelFan(dimensions, -source.place);
     return fans;
   }
   for (int axis = 0; axis < 3; ++axis)
     for (int direction : {-1, 1})
-      fans[std::size_t(2 * axis + (direction > 0 ? 1 : 0))] = fanFrom(source.place, dimensions, axis, direction, spacing);
+      fans[std::size_t(2 * axis + (direction > 0 ? 1 : 0))] =
+          fanFrom(source.place, dimensions, axis, direction);
   return fans;
 }
 

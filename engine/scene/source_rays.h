@@ -42,14 +42,10 @@ struct FaceRays {
   std::uint64_t rays() const { return std::uint64_t(rayCount.x) * std::uint64_t(rayCount.y); }
 };
 
-/// Distance between rays in voxels. At half a voxel an interpolated depth is as good as one summed up for the
-/// voxel alone (within 0.5 dB of the image); at a whole voxel images of thin shells lose 3 dB.
-inline constexpr double kRaySpacing = 0.5;
-
 /// The rays of all faces, in the order of fanIndex. Every voxel except one at the source itself lies between
-/// four rays of its face. A face has at most about six rays for every line of voxels along its axis; if `spacing`
-/// would need more, as for a source near the volume, the rays are farther apart.
-std::array<FaceRays, 6> faceRays(glm::ivec3 dimensions, const RaySource& source, double spacing = kRaySpacing);
+/// four rays of its face. A face has at most about six rays for every line of voxels along its axis; if half
+/// a voxel would need more, as for a source near the volume, the rays are farther apart.
+std::array<FaceRays, 6> faceRays(glm::ivec3 dimensions, const RaySource& source);
 
 /// The encoded depths of each face: [plane][j][i], planes counted from the first. A code is the square root
 /// of depth / kOpaqueDepth in 16 bits. Parallel rays use one face; the others are empty.

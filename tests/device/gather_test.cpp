@@ -3,10 +3,12 @@
 #include <algorithm>
 #include <cmath>
 
+#include "engine/gathering/gather_frame.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/image/metrics.h"
 #include "engine/reference/reference_gather.h"
 #include "engine/renderer_stages.h"
+#include "engine/splatting/frame_constants.h"
 #include "engine/validation/quality_scenes.h"
 #include "engine/volume/voxel_classifier.h"
 #include "shaders/gather_interface.h"
@@ -362,6 +364,38 @@ TEST_F(GatherTest, NothingIsDrawnOfAnEmptyVolume) {
   Renderer renderer(device(), empty, {.densityScale = 1.0}, {});
   for (const glm::vec4& pixel : renderer.render(alongZ(empty, {20, 20}, 2.0), gathering({20, 20})).pixels)
     EXPECT_EQ(pixel, glm::vec4(0.0f));
+}
+
+/// Single blocks at the far corner are small enough for the next level long before a whole slice of them is. To classify all voxels for a
+/// level that no ray reads takes many times as long as the frame.
+TEST_F(GatherTest, ScalarsAreNotMadeIntoBlocksForALevelThatNoRayReads) {
+  const Volume head = makeProcedural("head", 64);
+  Classification classification = coloured(head, 0.3f);
+  classification.order = ClassificationOrder::Post;
+  const Camera camera = framingCamera(head, 45.0, 35.0, 1.0, {});
+  const DeviceVolume outline = outlineOnDevice(head, classification);
+  int unread = 0, read = 0;
+  for (int pixels = 96; pixels > 16; pixels -= 4) {
+    FrameSettings settings = gathering(glm::ivec2(pixels));
+    settings.lod = 1.0f;
+    const FrameConstants constants = makeFrameConstants(device(), outline, {}, camera, settings);
+    const int coarsest = makeGatherFrame(outline, camera, settings, constants.detail, constants.endTransmittance).coarsest;
+    const bool differs = constants.detail.coarsest > 0 && coarsest == 0;
+    int& tried = differs ? unread : read;
+    if (constants.detail.coarsest == 0 || tried > 0) continue;
+    ++tried;
+    Renderer renderer(device(), head, classification, {});
+    renderer.render(camera, settings);
+    EXPECT_EQ(std::ranges::count(renderer.frameTimings(), "pack", &StageTime::name), coarsest > 0 ? 1 : 0) << pixels;
+    settings.lod = 0.0f;
+    if (differs) {
+      const Image fine = Renderer(device(), head, classification, {}).render(camera, settings);
+      settings.lod = 1.0f;
+      EXPECT_EQ(renderer.render(camera, settings).pixels, fine.pixels);
+    }
+  }
+  EXPECT_EQ(unread, 1);
+  EXPECT_EQ(read, 1);
 }
 
 }  // namespace
