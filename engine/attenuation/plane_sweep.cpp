@@ -130,6 +130,7 @@ class SweptLight::Sweep {
            device.description().name, device.availableBytes() >> 20, Parameter("light-attenuation", "table"));
     slab_ = Buffer(device, slabVoxels() * sizeof(float), MemoryUse::Device, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     slabTexels_ = TexelView(device, slab_, VK_FORMAT_R32_SFLOAT);
+    noTexels_ = TexelView(device, slab_, VK_FORMAT_R32_UINT, sizeof(std::uint32_t));
     carried_ = Buffer(device, fan.rays() * sizeof(float), MemoryUse::Device, "ray depths between slabs");
     depths_ = Buffer(device, depthBytes(fan, planes_), MemoryUse::Device, "ray depths");
     frame_ = Buffer(device, sizeof(shader::LightPlanes), MemoryUse::Device, "planes of a light", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
@@ -224,7 +225,7 @@ class SweptLight::Sweep {
       commands.barrier(kTransfer, kComputeStage);
     }
     const TexelView& table = values_.areScalars() ? tableTexels_ : slabTexels_;
-    const std::array<Binding, 5> rays{&slabTexels_, &carried_, &table, &slabTexels_, &carried_};
+    const std::array<Binding, 5> rays{&slabTexels_, &carried_, &table, &noTexels_, &carried_};
     commands.dispatchLinear(sweep_, rays, shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = place},
                             fan_.rays());
     commands.barrier(kComputeStage, kComputeStage);
@@ -309,6 +310,7 @@ class SweptLight::Sweep {
   const glm::dmat3 indexToWorld_{level_.outline().indexToWorld};
   Buffer slab_, carried_, depths_, frame_, codes_, table_;
   TexelView slabTexels_, tableTexels_;
+  TexelView noTexels_;  ///< bound where shaders read none
   Pipeline sweep_, lookUp_;
   std::map<int, Volume> layers_;
   int keptLayer_ = -1;

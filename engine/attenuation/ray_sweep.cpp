@@ -117,8 +117,8 @@ std::uint64_t rayBytes(glm::ivec3 dimensions, const RaySource& source) {
   return roomFor(faceRays(dimensions, source), dimensions).bytes();
 }
 
-std::uint64_t denseRayBytes(glm::ivec3 dimensions, const RaySource& source, double spacing) {
-  return roomForRays(faceRays(dimensions, source, spacing)).bytes();
+std::uint64_t denseRayBytes(glm::ivec3 dimensions, const RaySource& source) {
+  return roomForRays(faceRays(dimensions, source)).bytes();
 }
 
 RaySweep::RaySweep(const Device& device, const char* name)
@@ -141,6 +141,7 @@ void RaySweep::makeRoom(const RayRoom& room) {
                  VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT)) {
     slabTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_SFLOAT);
     slabQuads_ = TexelView(device_, slab_, VK_FORMAT_R32G32B32A32_SFLOAT);
+    noTexels_ = TexelView(device_, slab_, VK_FORMAT_R32_UINT, sizeof(std::uint32_t));
   }
 }
 
@@ -150,8 +151,8 @@ void RaySweep::recordScalars(Commands& commands, const DeviceVolume& volume, glm
   const shader::ExpandScalarsPush push{
       .first = first, .extent = quads, .dimensions = volume.layout.dimensions, .scalars = volume.scalarBricks->onDevice()};
   const bool texels = volume.scalarBricks->codeTexels.has_value();
-  const std::array<Binding, 3> bindings{&slabQuads_, texels ? &*volume.scalarBricks->codeTexels : &slabTexels_,
-                                        texels ? &*volume.scalarBricks->numberTexels : &slabTexels_};
+  const std::array<Binding, 3> bindings{&slabQuads_, texels ? &*volume.scalarBricks->codeTexels : &noTexels_,
+                                        texels ? &*volume.scalarBricks->numberTexels : &noTexels_};
   commands.dispatch(makeComputePipeline(device_, shaders::expand_scalars, {texels}), bindings, push, quads);
   commands.barrier(kComputeStage, kComputeStage);
 }
@@ -199,7 +200,7 @@ void RaySweep::recordBox(Commands& commands, const shader::FaceRays& fan, const 
                                            .strideA = strides[sideA],
                                            .strideB = strides[sideB]}};
   const OccupiedCells* const cells = box.cells;
-  const std::array<Binding, 5> bindings{&box.extinction, &carried_, &box.table, cells != nullptr ? &cells->near() : &box.extinction,
+  const std::array<Binding, 5> bindings{&box.extinction, &carried_, &box.table, cells != nullptr ? &cells->near() : &noTexels_,
                                         cells != nullptr ? &cells->dimensions() : &carried_};
   commands.dispatchLinear(makeComputePipeline(device_, shaders::ray_sweep, {scalars, false, cells != nullptr}), bindings, push,
                           std::uint64_t(fan.rayCount.x) * std::uint64_t(fan.rayCount.y));
@@ -230,8 +231,8 @@ void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RayS
              [&](const FaceRays& fan, const shader::FaceRays& onDevice) { recordFan(commands, volume, fan, onDevice, scalars, cells); });
 }
 
-void RaySweep::record(Commands& commands, const DenseExtinction& grid, const RaySource& source, double spacing) {
-  const std::array<FaceRays, 6> fans = faceRays(grid.dimensions, source, spacing);
+void RaySweep::record(Commands& commands, const DenseExtinction& grid, const RaySource& source) {
+  const std::array<FaceRays, 6> fans = faceRays(grid.dimensions, source);
   makeRoom(roomForRays(fans));
   commands.beginPass(name_);
   recordFans(fans, [&](const FaceRays& fan, const shader::FaceRays& onDevice) {

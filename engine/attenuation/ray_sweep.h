@@ -30,7 +30,7 @@ struct DenseExtinction {
   const TexelView& texels;
 };
 /// Bytes of device memory for the rays of a source through a dense grid, without those of the grid.
-std::uint64_t denseRayBytes(glm::ivec3 dimensions, const RaySource& source, double spacing);
+std::uint64_t denseRayBytes(glm::ivec3 dimensions, const RaySource& source);
 
 /// Bytes of device memory for the sweep of a source.
 struct RayRoom {
@@ -54,8 +54,8 @@ class RaySweep {
   /// Where `cells` is given, rays do not look at the voxels of cells that are far from it, for the same bits in less time.
   void record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars = false,
               const OccupiedCells* cells = nullptr);
-  /// The same through a grid of extinctions, along rays that are `spacing` cells apart.
-  void record(Commands& commands, const DenseExtinction& grid, const RaySource& source, double spacing);
+  /// The same through a grid of extinctions.
+  void record(Commands& commands, const DenseExtinction& grid, const RaySource& source);
   /// The rays of the last source, for look-ups, at index 2 axis + (direction > 0). Parallel rays have one
   /// face, which is stored in all six places, so that a look-up need not choose it with the same rounding.
   const std::array<shader::FaceRays, 6>& fans() const { return fans_; }
@@ -89,6 +89,7 @@ class RaySweep {
   ExpandPass expand_;
   Buffer slab_;  ///< float: extinction of the voxels of a slab
   TexelView slabTexels_, slabQuads_;
+  TexelView noTexels_;  ///< bound where shaders read none
   Buffer carried_;  ///< float, by ray: optical depth between slabs
   Buffer depths_;  ///< uint: codes of planes 2k and 2k + 1, by face, k and ray
   std::optional<TexelView> depthTexels_;

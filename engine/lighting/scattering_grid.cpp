@@ -33,10 +33,6 @@ int batchOf(std::size_t cells) {
   return (kDirections + batches - 1) / batches;
 }
 
-/// Distance between the rays of lights, in direct cells. Cells of light are means of several of these, and larger than what half of it
-/// shows.
-constexpr double kDirectRaySpacing = 1.0;
-
 /// A light in the index space of direct cells.
 RaySource directSource(const Light& light, const glm::dmat4& indexToWorld, const CellGrid& direct) {
   const RaySource source = lightSource(light, indexToWorld);
@@ -75,8 +71,7 @@ std::uint64_t ScatteringGrid::bytes(glm::ivec3 dimensions, const glm::dmat4& ind
       8 / 7;
   const CellGrid direct = ScatteringMedium::directGridOf(dimensions);
   std::uint64_t rays = 0;
-  for (const Light& light : lighting.lights)
-    rays = std::max(rays, denseRayBytes(direct.cells, directSource(light, indexToWorld, direct), kDirectRaySpacing));
+  for (const Light& light : lighting.lights) rays = std::max(rays, denseRayBytes(direct.cells, directSource(light, indexToWorld, direct)));
   const glm::u64vec3 padded(direct.cells + 2);
   return std::max(solving, rays + sizeof(float) * (padded.x * padded.y * padded.z + cells * (planes + medium)));
 }
@@ -168,6 +163,7 @@ void ScatteringGrid::makeDirect(const Lighting& lighting) {
   const CellGrid& fine = medium_.directGrid();
   const Buffer extinction = uploadDirectExtinctions();
   const TexelView texels(device_, extinction, VK_FORMAT_R32_SFLOAT);
+  const TexelView noTexels(device_, extinction, VK_FORMAT_R32_UINT, sizeof(std::uint32_t));
   const Buffer fans(device_, sizeof(shader::DirectFans), MemoryUse::Device, "rays through cells");
   const glm::dmat3 directToWorld = glm::dmat3(medium_.indexToWorld()) * double(fine.edge);
   RaySweep rays(device_, "scattering");
@@ -175,12 +171,12 @@ void ScatteringGrid::makeDirect(const Lighting& lighting) {
     const Light& light = lighting.lights[i];
     const RaySource source = directSource(light, medium_.indexToWorld(), fine);
     Commands commands(device_);
-    rays.record(commands, {.dimensions = fine.cells, .indexToWorld = directToWorld, .texels = texels}, source, kDirectRaySpacing);
+    rays.record(commands, {.dimensions = fine.cells, .indexToWorld = directToWorld, .texels = texels}, source);
     shader::DirectFans onDevice{};
     std::ranges::copy(rays.fans(), onDevice.fans);
     commands.update(fans, onDevice);
     const std::optional<TexelView>& depths = rays.depthTexels();
-    const std::array<Binding, 4> bindings{&texels, &direct_, &fans, depths ? &*depths : &texels};
+    const std::array<Binding, 4> bindings{&texels, &direct_, &fans, depths ? &*depths : &noTexels};
     const shader::ScatteringDirectPush push{.cells = medium_.grid().cells,
                                             .directCells = fine.cells,
                                             .ratio = medium_.grid().edge / fine.edge,

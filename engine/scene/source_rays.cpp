@@ -111,8 +111,7 @@ std::array<FaceRays, 6> faceRays(glm::ivec3 dimensions, const RaySource& source)
   }
   for (int axis = 0; axis < 3; ++axis)
     for (int direction : {-1, 1})
-      fans[std::size_t(2 * axis + (direction > 0 ? 1 : 0))] =
-          fanFrom(source.place, dimensions, axis, direction);
+      fans[std::size_t(2 * axis + (direction > 0 ? 1 : 0))] = fanFrom(source.place, dimensions, axis, direction);
   return fans;
 }
 

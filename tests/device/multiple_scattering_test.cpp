@@ -55,10 +55,11 @@ TEST_F(MultipleScatteringTest, TheDeviceSolvesTheEquationsThatTheReferenceSolves
   EXPECT_LT(errorOf(odd, {.densityScale = 0.3, .albedo = {0.99f, 0.8f, 0.5f}}, all), 0.01);
 }
 
+/// Rays along an axis pass through the centres of cells, so that direct light has no error of interpolation.
 TEST_F(MultipleScatteringTest, AGivenNumberOfOrdersIsThatManyIterations) {
   const Volume cloud = makeProcedural("cloud", 24);
   ScatteringSolver solver(device(), ScatteringMedium(cloud, {.densityScale = 20.0, .albedo = glm::vec3(0.99f)}));
-  Lighting lighting{.lights = {{.place = {1.0, 0.4, 0.2}}}, .ambient = glm::dvec3(0.2)};
+  Lighting lighting{.lights = {{.place = {1.0, 0.0, 0.0}}}, .ambient = glm::dvec3(0.2)};
   for (const int orders : {1, 2, 7}) {
     lighting.scattering = orders;
     EXPECT_LT(errorOf(cloud, {}, lighting, &solver), 1e-4) << orders;
