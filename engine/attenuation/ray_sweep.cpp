@@ -87,14 +87,15 @@ RayRoom roomFor(const std::array<FaceRays, 6>& fans, glm::ivec3 dimensions) {
   return room;
 }
 
-void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostBytes) {
+/// `needs` begins the sentence, `without` is the parameter that does without the rays.
+void checkFits(const Device& device, const RayRoom& room, std::uint64_t mostBytes, const char* needs, const Parameter& without) {
   // Shaders index the depths of a face with 31 bits.
   const std::uint64_t most = std::uint64_t(std::numeric_limits<std::int32_t>::max()) * sizeof(std::uint32_t);
   const std::uint64_t fits = std::min(std::uint64_t(device.maximumAllocation()), mostBytes);
   if (room.bytes() > mostBytes || room.depths > fits || room.largest > most)
     fail(ErrorKind::OutOfMemory,
-         "exact transmittance needs {} MiB of device memory for its rays, and {} can allocate {} MiB at once: use {}, or a smaller volume",
-         room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20, Parameter("light-attenuation", "table"));
+         "{} needs {} MiB of device memory for its rays, and {} can allocate {} MiB at once: use {}, or a smaller volume", needs,
+         room.bytes() >> 20, device.description().name, std::min(fits, most) >> 20, without);
 }
 
 }  // namespace
@@ -126,9 +127,9 @@ RaySweep::RaySweep(const Device& device, const char* name)
       name_(name),
       expand_(device) {}
 
-void RaySweep::makeRoom(const RayRoom& room) {
+void RaySweep::makeRoom(const RayRoom& room, const char* needs, const Parameter& without) {
   const std::uint64_t own = depths_.bytes() + slab_.bytes() + carried_.bytes();
-  checkFits(device_, room, device_.availableBytes() + own);
+  checkFits(device_, room, device_.availableBytes() + own, needs, without);
   if (growBuffer(device_, depths_, room.depths, "ray depths", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT)) {
     depthTexels_.reset();
     // Shaders find texels by 32 bits of the addresses.
@@ -225,7 +226,7 @@ void RaySweep::recordFans(const std::array<FaceRays, 6>& fans, const RecordFan& 
 
 void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RaySource& source, bool scalars, const OccupiedCells* cells) {
   const std::array<FaceRays, 6> fans = faceRays(volume.layout.dimensions, source);
-  makeRoom(roomFor(fans, volume.layout.dimensions));
+  makeRoom(roomFor(fans, volume.layout.dimensions), "exact transmittance", Parameter("light-attenuation", "table"));
   commands.beginPass(name_);
   recordFans(fans,
              [&](const FaceRays& fan, const shader::FaceRays& onDevice) { recordFan(commands, volume, fan, onDevice, scalars, cells); });
@@ -233,7 +234,7 @@ void RaySweep::record(Commands& commands, const DeviceVolume& volume, const RayS
 
 void RaySweep::record(Commands& commands, const DenseExtinction& grid, const RaySource& source) {
   const std::array<FaceRays, 6> fans = faceRays(grid.dimensions, source);
-  makeRoom(roomForRays(fans));
+  makeRoom(roomForRays(fans), "the direct part of scattered light", Parameter("scattering", "1"));
   commands.beginPass(name_);
   recordFans(fans, [&](const FaceRays& fan, const shader::FaceRays& onDevice) {
     recordBox(commands, onDevice,

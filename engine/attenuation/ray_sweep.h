@@ -7,6 +7,7 @@
 #include <cstdint>
 #include <optional>
 
+#include "engine/core/parameter.h"
 #include "engine/octree/device_volume.h"
 #include "engine/octree/occupancy.h"
 #include "engine/octree/occupied_cells.h"
@@ -78,7 +79,7 @@ class RaySweep {
   };
   template <typename RecordFan>
   void recordFans(const std::array<FaceRays, 6>& fans, const RecordFan& recordFan);
-  void makeRoom(const RayRoom& room);
+  void makeRoom(const RayRoom& room, const char* needs, const Parameter& without);
   void recordFan(Commands& commands, const DeviceVolume& volume, const FaceRays& fan, const shader::FaceRays& onDevice, bool scalars,
                  const OccupiedCells* cells) const;
   void recordBox(Commands& commands, const shader::FaceRays& fan, const SweptBox& box, bool scalars) const;

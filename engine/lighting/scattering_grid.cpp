@@ -85,7 +85,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   tinted_ = channels_ == 3 && (split.forward > 0.0 || lighting.isTinted());
   hasSky_ = lighting.hasAmbient();
   emits_ = medium.emits();
-  lit_ = !lighting.lights.empty();
+  lit_ = !lighting.lights.empty() && lighting.scattering != 1;  // what is scattered once is not in cells
   depthScale_ = lighting.tint * deltaScaleOf(lighting, medium);
   batch_ = batchOf(count_);
   compileAhead();

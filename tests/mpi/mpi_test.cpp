@@ -161,7 +161,7 @@ TEST_F(MpiTest, RanksWithDifferentFilesAreRefused) {
 /// Rank 1 lacks memory for rays from the light and would look its shadows up in the table: sums that must not be added.
 TEST_F(MpiTest, RanksWhoseDevicesNeedOtherMethodsAreRefused) {
   const ProgramResult result =
-      runScript(2, "[ $OMPI_COMM_WORLD_RANK = 1 ] && less='--memory-limit 14'; exec " + std::string(FREEVOXELS_MPI_PROGRAM) +
+      runScript(2, "[ $OMPI_COMM_WORLD_RANK = 1 ] && less='--memory-limit 16'; exec " + std::string(FREEVOXELS_MPI_PROGRAM) +
                        " render procedural:cloud " + (folder / "a.png").string() +
                        " --resolution 96 --size 64 --light direction=1,1,0.3 --draw splats $less");
   EXPECT_EQ(result.exitCode, int(ExitCode::Input)) << result.err;
