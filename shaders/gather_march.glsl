@@ -192,8 +192,8 @@ int quadAt(LevelGeometry level, vec2 position, int slice, out vec4 weights) {
   return ((brick << kBrickLevels | inBrick.y) << kBrickLevels | inBrick.x) << kBrickLevels | inBrick.z;
 }
 
-// Whether the stretch that ends at a position on a slice counts: without kCube always, and else if the quad around it begins in the cube
-// and not in the voxels around that.
+// Whether the stretch that ends at a position on a slice belongs to the cube: the quad around the position begins in the cube, and not among
+// the voxels around it. Always, without kCube.
 bool isOwn(LevelGeometry level, vec2 position, int slice) {
   if (!kCube) return true;
   const ivec3 block = ivec3(clamp(ivec2(floor(position)), ivec2(0), level.dimensions - 1), slice);

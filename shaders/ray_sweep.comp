@@ -16,15 +16,15 @@
 layout(constant_id = 0) const bool kScalars = false;
 // Whether rays begin with the depths that are carried, those of what is between the volume and the source, and end with all depths in there.
 layout(constant_id = 1) const bool kBetween = false;
-// Whether cells of 4^3 voxels are known that are far from all content, so that rays need not look at their voxels.
+// Whether it is known which cells of kSkipGroup^3 voxels are far from all occupied ones, so that rays need not look at their voxels.
 layout(constant_id = 2) const bool kSkips = false;
 
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
 layout(binding = 0) uniform samplerBuffer extinction;  // extinction of the slab's voxels, with 0 around the volume; or scalars
 layout(scalar, binding = 1) buffer Carried { float carried[]; };  // depth between slabs, by ray
-layout(binding = 3) uniform utextureBuffer nearContent;  // a byte by cell: whether it or one of its 26 neighbours has content
-layout(scalar, binding = 4) readonly buffer ContentSize { ivec3 contentCells; };
+layout(binding = 3) uniform utextureBuffer nearOccupied;  // a byte by cell: 1 if it or one of its 26 neighbours is occupied, otherwise 0
+layout(scalar, binding = 4) readonly buffer CellCounts { ivec3 cellCounts; };  // along the axes
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
 // The first of the four voxels around a position on a plane, which is counted from the first of the face; `weights` are those of the
@@ -79,24 +79,78 @@ float layersToFirst() {
   return fan.convergence == 0.0 ? 1.0 : min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
 }
 
-const int kGroupPairs = 2;  // pairs of planes that are skipped together: as many planes as a cell has voxels
+const int kGroupPairs = kSkipGroup / 2;  // pairs of planes that are skipped together: as many planes as a cell has voxels along its edge
 // Largest slope of a ray from whose position in the middle of a group the voxels that it reads there, and on the plane before, are in the
 // same cell or its neighbours.
 const float kMaxSkipSlope = 1.1;
 
+// A ray on its way from plane to plane.
+struct March {
+  uint ray;
+  vec2 atFirst, perPlane;  // position on the first plane, and step to the next one
+  float layer;             // world length of that step
+  int pair, end;           // the next pair of planes, and the first that is not marched any more
+  float depth;             // up to the plane before the next pair
+  PlaneScalar last;        // on that plane, with kScalars
+};
+
 // Whether nothing is near a ray on the planes of a group and on the one before them, nor in the stretches between these.
-bool isEmptyGroup(int group, vec2 atFirst, vec2 perPlane, ivec3 cells) {
+bool isEmptyGroup(March march, int group) {
+  if (!kSkips || max(abs(march.perPlane.x), abs(march.perPlane.y)) > kMaxSkipSlope) return false;
   const float plane = float(2 * kGroupPairs * group) + 0.5 * float(2 * kGroupPairs - 1);
   vec3 place;
   place[push.fan.axis] = float(push.fan.firstPlane) + float(push.fan.direction) * plane;
-  const vec2 side = atFirst + perPlane * plane;
+  const vec2 side = march.atFirst + march.perPlane * plane;
   place[(push.fan.axis + 1) % 3] = side.x;
   place[(push.fan.axis + 2) % 3] = side.y;
-  const ivec3 cell = clamp(ivec3(floor(place)) >> 2, ivec3(0), cells - 1);
-  return texelFetch(nearContent, cell.x + cells.x * (cell.y + cells.y * cell.z)).x == 0;
+  const ivec3 cell = clamp(ivec3(floor(place)) >> kSkipLevels, ivec3(0), cellCounts - 1);
+  return texelFetch(nearOccupied, cell.x + cellCounts.x * (cell.y + cellCounts.y * cell.z)).x == 0;
 }
 
-uint packDepths(vec2 depths) { return packUnorm2x16(sqrt(clamp(depths / kOpaqueDepth, 0.0, 1.0))); }
+void storeDepths(uint ray, int pair, vec2 depths) {
+  Depths(pairAddress(push.fan, pair)).pairs[ray] = packUnorm2x16(sqrt(clamp(depths / kOpaqueDepth, 0.0, 1.0)));
+}
+
+int endOfGroup(March march) { return min((march.pair / kGroupPairs + 1) * kGroupPairs, march.end); }
+
+// Stores the depth of groups of planes where it does not change, because they are empty, or need not be known, because nothing comes through.
+// Loops have the form of gather_march.glsl.
+void passOver(inout March march) {
+  int stopped = -1;  // the pair that has to be marched
+  do {
+    if (stopped != march.pair && march.pair < march.end) {
+      const bool passes = march.depth >= kOpaqueDepth || isEmptyGroup(march, march.pair / kGroupPairs);
+      const int end = passes ? endOfGroup(march) : march.pair;
+      [[unroll]] for (int i = 0; i < kGroupPairs; ++i)
+        if (march.pair + i < end) storeDepths(march.ray, march.pair + i, vec2(march.depth));
+      if (passes) march.last.coverage = 0.0;  // nothing is in the stretch from there, as nothing is in the cells beside the group
+      stopped = passes ? stopped : march.pair;
+      march.pair = end;
+    }
+  } while (stopped != march.pair && march.pair < march.end);
+}
+
+void marchGroup(inout March march) {
+  const int end = endOfGroup(march);
+  do {
+    if (march.pair < end) {
+      vec2 planeDepths;
+      [[unroll]] for (int i = 0; i < 2; ++i) {
+        const int plane = 2 * march.pair + i;
+        const vec2 position = march.atFirst + march.perPlane * float(plane);
+        if (kScalars) {
+          const PlaneScalar found = scalarAt(plane, position);
+          march.depth += march.layer * (plane == 0 ? layersToFirst() : 1.0) * meanOf(march.last, found);
+          march.last = found;
+        }
+        planeDepths[i] = march.depth;
+        if (!kScalars) march.depth += march.layer * interpolated(plane, position);
+      }
+      storeDepths(march.ray, march.pair, planeDepths);
+      ++march.pair;
+    }
+  } while (march.pair < end);
+}
 
 // The range of planes, counted from the first, within which the ray is near enough to the volume to be looked
 // up: x to y.
@@ -141,56 +195,26 @@ void main() {
 
   const ivec2 planes = planesWithin(atFirst, perPlane);
   const int begin = push.slab.begin / 2, end = (push.slab.end + 1) / 2;
-  int pair = max(planes.x / 2, begin);
-  const int behind = min(planes.y / 2 + 1, end);
-  if (pair >= behind) return;
-  float depth = 0.0;
+  March march;
+  march.ray = ray;
+  march.atFirst = atFirst;
+  march.perPlane = perPlane;
+  march.layer = layer;
+  march.pair = max(planes.x / 2, begin);
+  march.end = min(planes.y / 2 + 1, end);
+  if (march.pair >= march.end) return;
+  march.depth = 0.0;
   if (planes.x / 2 < begin)
-    depth = carried[ray];
+    march.depth = carried[ray];
   else if (planes.x == 0 && !kScalars)
-    depth = layer * sourceCut(atFirst, perPlane);
-  if (kBetween && planes.x / 2 >= begin) depth += carried[ray];
-  PlaneScalar last;
-  if (kScalars) last = scalarAt(2 * pair - 1, atFirst + perPlane * float(2 * pair - 1));
-  const ivec3 cells = kSkips ? contentCells : ivec3(1);
-  const bool maySkip = kSkips && max(abs(perPlane.x), abs(perPlane.y)) <= kMaxSkipSlope;
-  // Alternates between two steps until no plane is left: (1) stores the depth of groups of planes where it does not change, because they are
-  // empty, or need not be known, because nothing comes through; (2) marches one group. Loops have the form of gather_march.glsl.
+    march.depth = layer * sourceCut(atFirst, perPlane);
+  if (kBetween && planes.x / 2 >= begin) march.depth += carried[ray];
+  if (kScalars) march.last = scalarAt(2 * march.pair - 1, atFirst + perPlane * float(2 * march.pair - 1));
   do {
-    if (pair < behind) {
-      int lastEnd = -1;
-      do {
-        if (lastEnd != pair && pair < behind) {
-          const int group = pair / kGroupPairs;
-          const bool skips = depth >= kOpaqueDepth || (maySkip && isEmptyGroup(group, atFirst, perPlane, cells));
-          const int end = skips ? min((group + 1) * kGroupPairs, behind) : pair;
-          const uint codes = packDepths(vec2(depth));
-          [[unroll]] for (int i = 0; i < kGroupPairs; ++i)
-            if (pair + i < end) Depths(pairAddress(fan, pair + i)).pairs[ray] = codes;
-          if (skips) last.coverage = 0.0;  // the stretch from there has nothing, as the cells beside this group have nothing
-          lastEnd = skips ? lastEnd : pair;
-          pair = end;
-        }
-      } while (lastEnd != pair && pair < behind);
-      const int end = min((pair / kGroupPairs + 1) * kGroupPairs, behind);
-      do {
-        if (pair < end) {
-          vec2 planeDepths;
-          [[unroll]] for (int i = 0; i < 2; ++i) {
-            const int plane = 2 * pair + i;
-            if (kScalars) {
-              const PlaneScalar found = scalarAt(plane, atFirst + perPlane * float(plane));
-              depth += layer * (plane == 0 ? layersToFirst() : 1.0) * meanOf(last, found);
-              last = found;
-            }
-            planeDepths[i] = depth;
-            if (!kScalars) depth += layer * interpolated(plane, atFirst + perPlane * float(plane));
-          }
-          Depths(pairAddress(fan, pair)).pairs[ray] = packDepths(planeDepths);
-          ++pair;
-        }
-      } while (pair < end);
+    if (march.pair < march.end) {
+      passOver(march);
+      marchGroup(march);
     }
-  } while (pair < behind);
-  if (kBetween || push.slab.end < fan.planeCount) carried[ray] = depth;
+  } while (march.pair < march.end);
+  if (kBetween || push.slab.end < fan.planeCount) carried[ray] = march.depth;
 }

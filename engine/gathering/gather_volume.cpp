@@ -69,11 +69,11 @@ GatherVolume::GatherVolume(const Device& device, const Classification& classific
 /// Finds the cells of the octree that are bricks, and those that rays skip. A position in a cell stays for
 /// one more edge in that cell and its next neighbours along the positive axes, so these decide. The light of
 /// a surface is looked up 2.5 blocks outside of it, so bricks extend one cell farther, on all sides.
-void GatherVolume::makeBricks(const Cells& metCells, std::vector<StageTime>& times) {
+void GatherVolume::makeBricks(const Cells& occupied, std::vector<StageTime>& times) {
   const StageTimer timer(times, "bricks");
   const HierarchyLayout& hierarchy = built_.volume.hierarchy;
   const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
-  Cells cells = metCells;                               // one cell if the volume is smaller than a cell
+  Cells cells = occupied;                               // one cell if the volume is smaller than a cell
   std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level, starting above the finest
   for (int level = finest; level <= top; ++level) {
     met.push_back(spread(cells, 0, 1));

@@ -138,7 +138,7 @@ class GatherVolume {
   /// Whether the frame reads a level, or this one, that is not among the levels `made`, a bit for each.
   bool lacksLevels(std::uint32_t made) const { return (wantedLevels_ & ~made) != 0; }
   bool lacksLevel(std::uint32_t made, int level) const { return ((wantedLevels_ & ~made) >> level & 1u) != 0; }
-  void makeBricks(const Cells& metCells, std::vector<StageTime>& times);
+  void makeBricks(const Cells& occupied, std::vector<StageTime>& times);
   void makeSources();
   void prepareSampled(const Lighting* lighting);
   void describeLights(shader::GatherFrame& frame) const;
