@@ -72,7 +72,7 @@ struct CubeDrawing::State {
   std::vector<Cube> cubesOf(const Frame& frame, int level);
   void drawLevel(const Frame& frame, int level, std::span<const Cube> cubes, bool isLastLevel);
   void drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& inRegion, const VoxelRange& region,
-                const Cube& cube, bool isLast);
+                const Cube& cube, const Volume& volume, bool isLast);
   void resolve(const Frame& frame, const FrameTargets& targets);
 };
 

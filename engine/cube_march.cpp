@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <future>
 #include <glm/gtc/matrix_transform.hpp>
 #include <utility>
 
@@ -138,27 +139,34 @@ void CubeDrawing::State::drawLevel(const Frame& frame, int level, std::span<cons
   if (frame.settings.lighting) {
     cubeLevel.prepareLights(device, frame.allLights, times, frame.progress);
   }
+  // The next cube is read while one is drawn.
+  const auto beginReading = [&](std::size_t i) {
+    const VoxelRange box = withHalo(cubes[i].voxels, cubeLevel.outline().dimensions);
+    return std::async(std::launch::async, [&cubeLevel, box] { return cubeLevel.read(box); });
+  };
+  std::future<Volume> reading = beginReading(0);
   VoxelRange region;
   shader::GatherFrame inRegion{};
   for (std::size_t i = 0; i < cubes.size(); ++i) {
     if (frame.progress) frame.progress("drawing cubes", double(i) / double(cubes.size()));
     const VoxelRange here = regionOf(cubes[i].voxels, cubeLevel.outline().dimensions);
     if (here != std::exchange(region, here)) inRegion = frameOf(frame, cubeLevel, level, region);
-    drawCube(frame, cubeLevel, inRegion, region, cubes[i], isLastLevel && i + 1 == cubes.size());
+    Volume voxels;
+    {
+      const StageTimer timer(times, "read cubes");
+      voxels = reading.get();
+    }
+    if (i + 1 < cubes.size()) reading = beginReading(i + 1);
+    drawCube(frame, cubeLevel, inRegion, region, cubes[i], voxels, isLastLevel && i + 1 == cubes.size());
     ++cubesRead[std::size_t(level)];
   }
 }
 
-/// Positions on rays in `inRegion` are counted from the first voxel of `region`.
+/// Positions on rays in `inRegion` are counted from the first voxel of `region`. `volume` has the voxels of the cube and its halo.
 void CubeDrawing::State::drawCube(const Frame& frame, const CubeLevel& cubeLevel, const shader::GatherFrame& inRegion,
-                                  const VoxelRange& region, const Cube& cube, bool isLast) {
+                                  const VoxelRange& region, const Cube& cube, const Volume& volume, bool isLast) {
   const glm::ivec3 origin = region.first;
   const VoxelRange box = withHalo(cube.voxels, cubeLevel.outline().dimensions);
-  Volume volume;
-  {
-    const StageTimer timer(times, "read cubes");
-    volume = cubeLevel.read(box);
-  }
   const BuiltVolume built = buildVolume(device, volume, frame.classification, times, {}, BuiltLevels::Voxels);
   const SurroundingLight light{.dimensions = cubeLevel.outline().dimensions - origin,
                                .first = box.first - origin,

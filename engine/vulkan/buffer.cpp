@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cstring>
+#include <future>
 
 #include "engine/core/error.h"
 #include "engine/vulkan/commands.h"
@@ -90,6 +91,46 @@ TexelView::TexelView(const Device& device, const Buffer& buffer, VkFormat format
   view_ = OwnedBufferView(device.handle(), view);
 }
 
+namespace {
+
+/// Two buffers through which data are copied in pieces: the device copies one piece while the host copies another. Data of one piece need
+/// one buffer and no thread.
+class StagingHalves {
+ public:
+  StagingHalves(const Device& device, MemoryUse use, VkDeviceSize bytes)
+      : device_(device), use_(use), pieceBytes_(std::min(kStagingBytes / 2, bytes)), isOnePiece_(pieceBytes_ == bytes) {}
+
+  VkDeviceSize pieceBytes() const { return pieceBytes_; }
+  /// The half that no copy uses, if no more than one copy was begun since the last finishCopy().
+  const Buffer& next() {
+    Buffer& half = halves_[taken_++ % 2];
+    if (half.bytes() == 0) half = Buffer(device_, pieceBytes_, use_, "staging");
+    return half;
+  }
+  void beginCopy(const Buffer& from, const Buffer& to, VkBufferCopy region) {
+    copying_ = std::async(isOnePiece_ ? std::launch::deferred : std::launch::async, [this, &from, &to, region] {
+      Commands commands(device_);
+      commands.copy(from, to, region);
+      commands.submitAndWait();
+    });
+  }
+  /// Waits for the copy that was begun last, if there is one, and throws what it threw.
+  void finishCopy() {
+    if (copying_.valid()) copying_.get();
+  }
+
+ private:
+  const Device& device_;
+  const MemoryUse use_;
+  const VkDeviceSize pieceBytes_;
+  const bool isOnePiece_;
+  std::array<Buffer, 2> halves_;
+  std::size_t taken_ = 0;
+  std::future<void> copying_;  // is destroyed, and waits, before the halves
+};
+
+}  // namespace
+
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data) {
   FV_CHECK_LE(data.size(), buffer.bytes());
   if (data.empty()) return;
@@ -97,15 +138,15 @@ void upload(const Device& device, const Buffer& buffer, std::span<const std::byt
     std::memcpy(buffer.mapped(), data.data(), data.size());
     return;
   }
-  const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Upload,
-                       "staging");
-  for (VkDeviceSize done = 0; done < data.size(); done += staging.bytes()) {
-    const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - done);
-    std::memcpy(staging.mapped(), data.data() + done, size);
-    Commands commands(device);
-    commands.copy(staging, buffer, {.srcOffset = 0, .dstOffset = done, .size = size});
-    commands.submitAndWait();
+  StagingHalves staging(device, MemoryUse::Upload, data.size());
+  for (VkDeviceSize done = 0; done < data.size(); done += staging.pieceBytes()) {
+    const Buffer& half = staging.next();
+    const VkDeviceSize size = std::min(staging.pieceBytes(), data.size() - done);
+    std::memcpy(half.mapped(), data.data() + done, size);
+    staging.finishCopy();
+    staging.beginCopy(half, buffer, {.srcOffset = 0, .dstOffset = done, .size = size});
   }
+  staging.finishCopy();
 }
 
 bool growBuffer(const Device& device, Buffer& buffer, VkDeviceSize bytes, const char* name, VkBufferUsageFlags usage) {
@@ -122,14 +163,21 @@ void download(const Device& device, const Buffer& buffer, std::span<std::byte> d
     std::memcpy(data.data(), buffer.readable() + first, data.size());
     return;
   }
-  const Buffer staging(device, std::min<VkDeviceSize>(kStagingBytes, data.size()), MemoryUse::Readback,
-                       "readback");
-  for (VkDeviceSize done = 0; done < data.size(); done += staging.bytes()) {
-    const VkDeviceSize size = std::min<VkDeviceSize>(staging.bytes(), data.size() - done);
-    Commands commands(device);
-    commands.copy(buffer, staging, {.srcOffset = first + done, .dstOffset = 0, .size = size});
-    commands.submitAndWait();
-    std::memcpy(data.data() + done, staging.mapped(), size);
+  StagingHalves staging(device, MemoryUse::Readback, data.size());
+  const auto sizeAt = [&](VkDeviceSize done) { return std::min(staging.pieceBytes(), data.size() - done); };
+  const auto beginPiece = [&](VkDeviceSize done) {
+    const Buffer& half = staging.next();
+    staging.beginCopy(buffer, half, {.srcOffset = first + done, .dstOffset = 0, .size = sizeAt(done)});
+    return &half;
+  };
+  const Buffer* half = beginPiece(0);
+  for (VkDeviceSize done = 0; done < data.size();) {
+    staging.finishCopy();
+    const VkDeviceSize next = done + sizeAt(done);
+    const Buffer* const nextHalf = next < data.size() ? beginPiece(next) : nullptr;
+    std::memcpy(data.data() + done, half->mapped(), sizeAt(done));
+    done = next;
+    half = nextHalf;
   }
 }
 

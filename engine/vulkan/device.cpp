@@ -108,6 +108,7 @@ DeviceDescription describe(int index, VkPhysicalDevice physical) {
   vkGetPhysicalDeviceProperties2(physical, &base);
 
   DeviceDescription description{.index = index,
+                                .physical = physical,
                                 .name = base.properties.deviceName,
                                 .type = typeName(base.properties.deviceType),
                                 .vulkanType = base.properties.deviceType,
@@ -187,7 +188,7 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
 Device::Device(const Instance& instance, std::string_view selector, const DeviceLimits& limits, std::span<const char* const> moreExtensions,
                const std::filesystem::path& cacheFolder)
     : description_(choose(listDevices(instance), selector)),
-      physical_(physicalDevices(instance)[std::size_t(description_.index)]),
+      physical_(description_.physical),
       limits_(limits),
       mapsOwnMemory_(!instance.validates()),
       isOwn_(true),

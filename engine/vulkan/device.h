@@ -24,6 +24,7 @@ class PipelineStore;
 
 struct DeviceDescription {
   int index = 0;
+  VkPhysicalDevice physical = VK_NULL_HANDLE;  ///< of the instance that it was listed of
   std::string name;
   std::string type;  ///< "discrete GPU", "integrated GPU", "virtual GPU", "CPU", "other"
   VkPhysicalDeviceType vulkanType = VK_PHYSICAL_DEVICE_TYPE_OTHER;  ///< the same
