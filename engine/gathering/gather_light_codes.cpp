@@ -100,7 +100,8 @@ void GatherVolume::recordOtherDepths(Commands& commands, const ShadowingVolume& 
   for (int light = 0; light < sampleLights() && count > 0; ++light) {
     const RaySweep& rays = other.lights->rays(light);
     const std::optional<TexelView>& texels = rays.depthTexels();
-    const Pipeline pass = makeComputePipeline(device_, shaders::other_depths, {other.scalars, texels.has_value()});
+    const Pipeline pass =
+        makeComputePipeline(device_, shaders::other_depths, {other.scalars, texels.has_value(), sampled_[std::size_t(light)].atInfinity});
     const std::array<Binding, 4> bindings{&brickCellTexels_, &constants, &other.lights->lights(), texels ? &*texels : &brickCellTexels_};
     const shader::OtherDepthsPush push{.firstBrick = first,
                                        .count = count,
