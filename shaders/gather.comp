@@ -164,7 +164,7 @@ void march(inout Sums sums, LevelGeometry level, Ray ray, ivec2 slices, float en
       do {
         if (slicesLeft > leftAfterGroup) addNext(sums, last, slice, slicesLeft, level, ray, leftAfterGroup, final, scalars);
       } while (slicesLeft > leftAfterGroup);
-      if (sums.transmittance <= endTransmittance) slicesLeft = 0;
+      if (sums.transmittance <= endTransmittance || (kMerged && mergedTransmittance <= endTransmittance)) slicesLeft = 0;
     }
   } while (slicesLeft > 0);
 }
@@ -227,6 +227,16 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   distanceSum += ray.perSlice * sums.distance;
 }
 
+// Stores the sums of a sample. A ray that ended early becomes opaque: what lies behind its end is taken to have the mean colour of what lies
+// in front.
+void storeSums(int sampleIndex, vec3 color, float transmittance, float distanceSum) {
+  const float energy = 1.0 - transmittance;
+  const bool complete = !kCube || frame.cube.isLast != 0;
+  const float whole = transmittance > frame.endTransmittance || !complete ? 1.0 : 1.0 / energy;
+  imageStore(colorEnergy, sampleIndex, whole * vec4(color, energy));
+  imageStore(distances, sampleIndex, vec4(whole * distanceSum));
+}
+
 // Stores the sums of a sample whose scalars are projected: between cubes what was projected so far.
 void storeProjected(int sampleIndex, Projected all) {
 #ifdef CONTINUES_SUMS
@@ -249,8 +259,10 @@ void main() {
   if (!kCube && push.rays != uvec2(0)) {
     // With other volumes: rays that meet only this one are marched as if there were no others.
     const uint met = MergedRays(push.rays).values[slotOfThread()], own = 1u << push.volume;
-    if ((met & own) == 0 || (met == own) == kMerged) return;
+    const bool isLast = met >> push.volume == 1u;
+    if ((met & own) == 0 || (met == own) == kMerged || (kMerged && isLast != kComposites)) return;
     if (kMerged) keepIntervals();
+    if (kMerged && kComposites) openLists(met);
   }
   index += kCube ? frame.cube.corner : frame.firstSeen;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
@@ -291,14 +303,9 @@ void main() {
     for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
       marchLevel(sums, distanceSum, sampleRay, level, false);
   if (kMerged) {
-    closeSlab(slotOfThread(), kTinted);
-    EntryCounts(push.counts).values[push.volume * push.slots + slotOfThread()] = entryCount;
+    closeAllSlabs();
+    if (kComposites) storeSums(sampleIndex, mergedColor, mergedTransmittance, mergedDistance);
     return;
   }
-  // A ray that ended early becomes opaque: what lies behind its end is taken to have the mean colour of what lies in front.
-  const float energy = 1.0 - sums.transmittance;
-  const bool complete = !kCube || frame.cube.isLast != 0;
-  const float whole = sums.transmittance > frame.endTransmittance || !complete ? 1.0 : 1.0 / energy;
-  imageStore(colorEnergy, sampleIndex, whole * vec4(colorBefore + frame.sourceUnit * sums.color, energy));
-  imageStore(distances, sampleIndex, vec4(whole * distanceSum));
+  storeSums(sampleIndex, colorBefore + frame.sourceUnit * sums.color, sums.transmittance, distanceSum);
 }

@@ -45,7 +45,8 @@ void addSlice(inout Sums sums, LevelGeometry level, Ray ray, int slice) {
   const vec4 medium = mediumAt(quad, weights, extinctionsOf(quad), ray.toEye);
   if (kCube && (!isOwn(level, position, slice) || medium == vec4(0.0))) return;
   SegmentLight lit;
-  addSegment(sums, medium, ray.layer * fractionInFront(ahead), ahead, 0.5, lit, ray);
+  SlabPart none;
+  addSegment(none, sums, medium, ray.layer * fractionInFront(ahead), ahead, 0.5, lit, ray);
 }
 
 // For classified blocks that are lit at samples: the values on a slice.
@@ -112,8 +113,7 @@ void addHalves(inout Sums sums, SliceValues last, SliceValues found, LevelGeomet
       farLit.emission *= meanTransmittance(ray.layer * far.x * farMedium.a);
     }
   }
-  addSegment(sums, nearMedium, ray.layer * near.x, near.y, near.z, lit, ray);
-  addSegment(sums, farMedium, ray.layer * far.x, far.y, far.z, farLit, ray);
+  addHalfSegments(sums, HalfSegment(nearMedium, ray.layer, near), HalfSegment(farMedium, ray.layer, far), lit, farLit, ray);
 }
 
 // For classified blocks that are lit at samples: the stretch from the previous slice. The depth towards a
@@ -153,7 +153,8 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, LevelGeometry leve
   } else {
     const float stretch = ray.layer * clamp(ahead, 0.0, 1.0);
     if (kEmits) lit.emission = leavingEmission(last, found, stretch);
-    addSegment(sums, medium, stretch, ahead - 0.5, 0.5, lit, ray);
+    SlabPart none;
+    addSegment(none, sums, medium, stretch, ahead - 0.5, 0.5, lit, ray);
   }
   last = found;
 }

@@ -129,7 +129,7 @@ struct SamplesPush {
   int volume;           // the number of the volume
   int slabs;         // number of slabs, and so of entries for which a volume has room
   uvec2 merge, rays;              // device addresses: MergeFrame; the volumes that the ray of each slot meets, a bit for each;
-  uvec2 entries, counts, depths;  // what the volumes have in slabs (gather_samples.glsl)
+  uvec2 entries, counts, depths;  // what the volumes have in slabs (gather_slabs.glsl)
 };
 
 // Several volumes in one image (engine/gathering/merged_pass.h). What each has along a ray is added up in slabs: between planes parallel
@@ -152,7 +152,6 @@ struct SlabInterval {
 
 struct MergeFrame {
   int volumes, intervals;
-  float endTransmittance;                    // at which rays end
   SlabInterval interval[kMaxSlabIntervals];  // in ascending order
   MergedBox boxes[kMaxMerged];
 };

@@ -2,7 +2,7 @@
 #ifndef GATHER_LIGHT_GLSL
 #define GATHER_LIGHT_GLSL
 #include "gather_march.glsl"
-#include "gather_samples.glsl"
+#include "gather_slabs.glsl"
 #include "phase_function.glsl"
 #define SCATTERED_TEXEL(i) texelFetch(scatteredTexels, i)
 #include "scattered_light.glsl"
@@ -58,8 +58,8 @@ vec3 lightOf(int light, SegmentLight lit, vec3 depth, vec3 toEye) {
 
 // Adds a segment of the ray with a constant source term (rgb) and extinction (a), whose middle is `ahead` slices from the eye, and which
 // reaches `reach` slices from there. The light that leaves it is dimmed by the mean of its own transmittance, or with kMerged by that of
-// the slabs in which it is. `segmentLength` is in units of 1 / extinction.
-void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, float reach, SegmentLight lit, Ray ray) {
+// the slabs in which it is, to which the caller adds `part`. `segmentLength` is in units of 1 / extinction.
+void addSegment(out SlabPart part, inout Sums sums, vec4 medium, float segmentLength, float ahead, float reach, SegmentLight lit, Ray ray) {
   const vec3 toEye = ray.toEye;
   const float depth = segmentLength * medium.a;
   const float through = exp(-depth);
@@ -85,12 +85,26 @@ void addSegment(inout Sums sums, vec4 medium, float segmentLength, float ahead, 
   vec3 source = leaving * medium.rgb;
   if (kEmits) source += lit.emission;
   if (kMerged)
-    addToSlabs(segmentLength * frame.sourceUnit * source, depth, depths, ray.perSlice * max(ahead - reach, 0.0),
-               ray.perSlice * max(ahead + reach, 0.0), kTinted);
+    part = SlabPart(vec4(segmentLength * frame.sourceUnit * source, depth), depths);
   else
     sums.color += before * segmentLength * source;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
   sums.transmittance = rest;
+}
+
+// A half of a stretch between two slices. `place` is as of halfStretch(), `layer` the length of a slice in units of 1 / extinction.
+struct HalfSegment {
+  vec4 medium;
+  float layer;
+  vec3 place;
+};
+
+void addHalfSegments(inout Sums sums, HalfSegment near, HalfSegment far, SegmentLight nearLit, SegmentLight farLit, Ray ray) {
+  SlabPart nearPart, farPart;
+  addSegment(nearPart, sums, near.medium, near.layer * near.place.x, near.place.y, near.place.z, nearLit, ray);
+  addSegment(farPart, sums, far.medium, far.layer * far.place.x, far.place.y, far.place.z, farLit, ray);
+  const vec3 borders = vec3(near.place.y - near.place.z, near.place.y + near.place.z, far.place.y + far.place.z);
+  if (kMerged) addToSlabs(nearPart, farPart, ray.perSlice * max(borders, 0.0));
 }
 
 float lightDepth(int slot, int quad, vec4 weights) {

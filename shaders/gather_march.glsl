@@ -209,4 +209,8 @@ vec3 voxelPosition(Ray ray, float slice) {
   return (position + 0.5) * ray.edge - 0.5;
 }
 
+// The mean of exp(-depth) over a segment along which the depth changes linearly from 0 to x, of either sign. It is multiplied by the
+// transmittance at its beginning, which is nothing where x is less than -64.
+float meanTransmittance(float x) { return abs(x) < 0.02 ? 1.0 - x * (0.5 - x / 6.0) : (1.0 - exp(-max(x, -64.0))) / x; }
+
 #endif

@@ -222,8 +222,7 @@ void addScalarStretch(inout Sums sums, inout SliceValues last, Stretch stretch, 
       farLit.change *= 2.0 * farPart.x;
     }
   }
-  addSegment(sums, near, nearLayer * nearPart.x, nearPart.y, nearPart.z, nearLit, ray);
-  addSegment(sums, far, farLayer * farPart.x, farPart.y, farPart.z, farLit, ray);
+  addHalfSegments(sums, HalfSegment(near, nearLayer, nearPart), HalfSegment(far, farLayer, farPart), nearLit, farLit, ray);
   last = found;
 }
 

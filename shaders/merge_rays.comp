@@ -1,7 +1,11 @@
 #version 460
-// Finds which volumes of a frame each ray meets.
+// Finds which volumes of a frame each ray meets. Stores the sums of rays that meet none.
 #extension GL_GOOGLE_include_directive : require
 #include "gather_samples.glsl"
+
+layout(scalar, binding = 1) uniform Merge { MergeFrame merge; };
+layout(binding = 2, rgba32f) writeonly uniform imageBuffer colorEnergy;
+layout(binding = 3, r32f) writeonly uniform imageBuffer distances;
 
 // Interpolation reaches a voxel beyond the outermost centres.
 const float kAround = 1.0 + 1.0 / 1024.0;
@@ -11,10 +15,9 @@ void main() {
   if (any(greaterThanEqual(index, frame.seenExtent))) return;
   index += frame.firstSeen;
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
-  MergeConstants merge = MergeConstants(push.merge);
   uint met = 0;
-  for (int v = 0; v < merge.values.volumes; ++v) {
-    const MergedBox box = merge.values.boxes[v];
+  for (int v = 0; v < merge.volumes; ++v) {
+    const MergedBox box = merge.boxes[v];
     float begin = 0.0, end = 3e38;
     for (int c = 0; c < 3; ++c) {
       const float origin = dot(box.origin[c], position), direction = dot(box.direction[c], position);
@@ -26,4 +29,8 @@ void main() {
     if (begin <= end) met |= 1u << v;
   }
   MergedRays(push.rays).values[slotOfThread()] = met;
+  if (met != 0) return;
+  const int place = index.x + index.y * frame.samples.x;
+  imageStore(colorEnergy, place, vec4(0.0));
+  imageStore(distances, place, vec4(0.0));
 }

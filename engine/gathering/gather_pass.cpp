@@ -57,11 +57,13 @@ const Shader& gatherShader(const GatherVolume& volume, bool isProjected, GatherP
   return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][std::size_t(variant)];
 }
 
-Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, bool holdout, const Shader& shader) {
-  return makeComputePipeline(device, shader,
-                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
-                              std::uint32_t(volume.sampleLights()), volume.hasScattered(), volume.hasFlux(), volume.isTinted(),
-                              volume.hasEmissionApart(), levels && volume.hasScalars(), holdout});
+Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, bool holdout, const Shader& shader,
+                    int lists = 0) {
+  return makeComputePipeline(
+      device, shader,
+      {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
+       std::uint32_t(volume.sampleLights()), volume.hasScattered(), volume.hasFlux(), volume.isTinted(), volume.hasEmissionApart(),
+       levels && volume.hasScalars(), holdout, lists > 0, std::uint32_t(std::max(lists, 1))});
 }
 
 std::uint64_t latticeSize(const shader::GatherFrame& frame) {
@@ -134,6 +136,7 @@ std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int 
   for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
   bindings.emplace_back(volume.hasScattered() ? &volume.scatteredTexels() : &noLightTexels_);
   bindings.emplace_back(&volume.gradients());
+  for (const TexelView* const texels : {target.slabs, target.depths}) bindings.emplace_back(texels != nullptr ? texels : &noLightTexels_);
   return bindings;
 }
 
@@ -142,7 +145,7 @@ void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const 
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
     const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, frame.raysOfPixel > 0,
-                                         gatherShader(volume, frame.projection != 0, target.variant));
+                                         gatherShader(volume, frame.projection != 0, target.variant), target.lists);
     const std::vector<Binding> bindings = gatherBindings(volume, axis, target);
     if (target.arguments != nullptr)
       commands.dispatchIndirect(pipeline, bindings, samples, *target.arguments, target.offset, target.mostGroups);

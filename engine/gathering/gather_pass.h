@@ -51,6 +51,9 @@ class GatherPass {
     const Buffer* arguments = nullptr;  ///< of an indirect dispatch
     std::uint64_t offset = 0;           ///< in `arguments`
     std::uint64_t mostGroups = 0;       ///< of an indirect dispatch
+    const TexelView* slabs = nullptr;   ///< with Variant::Merged: entries of the lists of volumes
+    const TexelView* depths = nullptr;  ///< and their optical depths for light; null where that has no other extinction than alpha
+    int lists = 0;                      ///< and how many of these are composited with the volume; 0 if it stores a list itself
   };
   /// One dispatch for each axis along which the volume's rays march.
   void dispatch(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const Dispatch& target,

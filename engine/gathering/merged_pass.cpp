@@ -4,7 +4,6 @@
 #include <cmath>
 
 #include "embedded/merge_rays.h"
-#include "embedded/merge_sums.h"
 #include "engine/core/error.h"
 #include "engine/vulkan/commands.h"
 
@@ -79,7 +78,7 @@ SlabPlan planSlabs(std::span<const SlabExtent> extents, int most) {
 
 void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Camera& camera) {
   FV_CHECK_LE(parts.size(), std::size_t(shader::kMaxMerged));
-  shader::MergeFrame merge{.volumes = int(parts.size()), .endTransmittance = parts.front().frame.endTransmittance};
+  shader::MergeFrame merge{.volumes = int(parts.size())};
   std::vector<SlabExtent> extents;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     const DeviceVolume& volume = *parts[i].onDevice;
@@ -97,7 +96,8 @@ void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Ca
   volumes_ = int(parts.size());
   std::ranges::copy(plan.intervals, merge.interval);
   tinted_ = std::ranges::any_of(parts, [](const Part& part) { return part.volume->isTinted(); });
-  if (merge_.bytes() == 0) merge_ = Buffer(device_, sizeof(merge), MemoryUse::Device, "volumes of a frame");
+  if (merge_.bytes() == 0)
+    merge_ = Buffer(device_, sizeof(merge), MemoryUse::Device, "volumes of a frame", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
   commands.update(merge_, merge);
   for (std::size_t i = 0; i < parts.size(); ++i) {
     if (i == frames_.size())
@@ -115,12 +115,13 @@ std::uint64_t MergedPass::mostEntries() const {
 /// So many slabs that there is room for a row of workgroups.
 int MergedPass::mostSlabs(const shader::GatherFrame& frame, int volumes) const {
   const std::uint64_t columns = std::uint64_t(frame.seenExtent.x + kTile);
-  const std::uint64_t slabs = mostEntries() / (2 * std::uint64_t(volumes) * columns * kTile);  // with tinted light, twice as much
+  const std::uint64_t slabs =
+      mostEntries() / (2 * std::uint64_t(std::max(volumes - 1, 1)) * columns * kTile);  // with tinted light, twice as much
   return int(std::clamp<std::uint64_t>(slabs, 2 * shader::kMaxSlabIntervals, shader::kMaxSlabs));
 }
 
 std::uint64_t MergedPass::entriesOfSlot() const {
-  return std::uint64_t(volumes_) * std::uint64_t(std::max(slabs_, 1));
+  return std::uint64_t(std::max(volumes_ - 1, 1)) * std::uint64_t(std::max(slabs_, 1));
 }
 
 /// How many rows of a dispatch are marched at a time: of workgroups of a list, all of a range of it where there is room for that.
@@ -150,7 +151,9 @@ void MergedPass::makeRoom(std::uint64_t slots) {
   growBuffer(device_, counts_, slots * std::uint64_t(volumes_) * sizeof(std::uint32_t), "entries of rays");
   if (growBuffer(device_, entries_, slots * entriesOfSlot() * sizeof(glm::vec4), "slabs", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
     entryTexels_ = TexelView(device_, entries_);
-  if (tinted_) growBuffer(device_, depths_, slots * entriesOfSlot() * sizeof(glm::vec4), "optical depths of slabs");
+  if (tinted_ && growBuffer(device_, depths_, slots * entriesOfSlot() * sizeof(glm::vec4), "optical depths of slabs",
+                            VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
+    depthTexels_ = TexelView(device_, depths_);
 }
 
 void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch target,
@@ -162,26 +165,28 @@ void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, Gath
   push.counts = addressWords(counts_.address());
   push.slabs = slabs_;
   push.depths = addressWords(depths_.bytes() > 0 ? depths_.address() : 0);
-  const Buffer& frame = pass_.frameBuffer();
-  const auto dispatch = [&](const Pipeline& pipeline, std::span<const Binding> bindings) {
-    if (target.arguments != nullptr)
-      commands.dispatchIndirect(pipeline, bindings, push, *target.arguments, target.offset, target.mostGroups);
-    else
-      commands.dispatch(pipeline, bindings, push, glm::ivec3(target.threads, 1));
-    commands.barrier(kComputeStage, kComputeStage);
-  };
-  dispatch(makeComputePipeline(device_, shaders::merge_rays, {}), std::array<Binding, 1>{&frame});
+  const Pipeline mergeRays = makeComputePipeline(device_, shaders::merge_rays, {});
+  const std::array<Binding, 4> bindings{&pass_.frameBuffer(), &merge_, &pass_.colorEnergyTexels(), &pass_.distanceTexels()};
+  if (target.arguments != nullptr)
+    commands.dispatchIndirect(mergeRays, bindings, push, *target.arguments, target.offset, target.mostGroups);
+  else
+    commands.dispatch(mergeRays, bindings, push, glm::ivec3(target.threads, 1));
+  commands.barrier(kComputeStage, kComputeStage);
+  target.slabs = &entryTexels_;
+  target.depths = tinted_ ? &depthTexels_ : nullptr;
   for (std::size_t i = 0; i < parts.size(); ++i) {
     push.volume = int(i);
     target.frame = &frames_[i];
-    for (const GatherPass::Variant variant : {GatherPass::Variant::Whole, GatherPass::Variant::Merged}) {
+    const auto march = [&](GatherPass::Variant variant, int lists) {
       target.variant = variant;
+      target.lists = lists;
       pass_.dispatch(commands, *parts[i].volume, parts[i].frame, target, push);
-    }
+    };
+    march(GatherPass::Variant::Whole, 0);
+    if (i > 0) march(GatherPass::Variant::Merged, int(i));
+    if (i + 1 < parts.size()) march(GatherPass::Variant::Merged, 0);
+    commands.barrier(kComputeStage, kComputeStage);
   }
-  commands.barrier(kComputeStage, kComputeStage);
-  dispatch(makeComputePipeline(device_, shaders::merge_sums, {tinted_, std::uint32_t(volumes_)}),
-           std::array<Binding, 4>{&frame, &pass_.colorEnergyTexels(), &pass_.distanceTexels(), &entryTexels_});
 }
 
 /// Marches samples in ranges of rows, of samples or of workgroups of the list.

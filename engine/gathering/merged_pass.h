@@ -25,7 +25,7 @@ struct SlabExtent {
 /// shader::kMaxMerged extents.
 SlabPlan planSlabs(std::span<const SlabExtent> extents, int most = shader::kMaxSlabs);
 
-/// COMPUTE merge_rays.comp, gather.comp and merge_sums.comp, for one range of rays after the other.
+/// COMPUTE merge_rays.comp and gather.comp, for one range of rays after the other.
 class MergedPass {
  public:
   /// One of the volumes, prepared for the frame; all frames have the same lattice (shareLattice). At most shader::kMaxMerged.
@@ -57,9 +57,9 @@ class MergedPass {
   GatherPass pass_;
   std::vector<Buffer> frames_;  ///< shader::GatherFrame of each part
   Buffer merge_;                ///< shader::MergeFrame
-  Buffer rays_, counts_;        ///< uint by slot: volumes that are met; by volume and slot: numbers of entries
-  Buffer entries_, depths_;     ///< vec4 by volume, number and slot; `depths_` only where light has another extinction than alpha
-  TexelView entryTexels_;
+  Buffer rays_, counts_;        ///< uint by slot: volumes that are met; by volume but the last and slot: numbers of entries
+  Buffer entries_, depths_;  ///< vec4 by volume but the last, number and slot; `depths_` only where light has another extinction than alpha
+  TexelView entryTexels_, depthTexels_;
   int volumes_ = 0, slabs_ = 0;
   bool tinted_ = false;
 };
