@@ -38,7 +38,7 @@ std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, cons
     SceneDescription alone = description;
     alone.classification.channels = channels;
     for (std::size_t other = 0; other < channels.size(); ++other)
-      alone.classification.channels[other].color = other == i ? channels[i].color.value_or(automaticChannelColor(i)) : glm::vec3(0.0f);
+      alone.classification.channels[other].color = other == i ? channelColor(channels[i], i) : glm::vec3(0.0f);
     const Volume volume = alone.readVolume(kMaxNumberedVoxels);
     Renderer renderer(device, volume, scene.classification, description.method.table());
     const Image layer = renderer.render(scene.camera, settings, progress);

@@ -93,7 +93,13 @@ ChannelStyle readChannel(const std::string& name, const std::string& text) {
       channel.window = {float(n[0]), float(n[1])};
     } else {
       const std::vector<std::string> parts = wordsOf(word, '@');
-      if (!parts.front().empty() || parts.size() == 1) channel.color = readColor(name, parts.front());
+      const std::optional<glm::dvec3> color = namedColor(parts.front());
+      if (color)
+        channel.color = glm::vec3(*color);
+      else if (!parts.front().empty())
+        channel.function = parts.front();
+      else if (parts.size() == 1)
+        fail(ErrorKind::Usage, "{} takes {}, not '{}'", name, kChannelForm, quotedPart(text));
       if (parts.size() > 1)
         channel.weight = float(readNumbers({.name = name + " weight", .form = "WEIGHT", .range = {0.0, kLargest}}, parts.back()).front());
     }
@@ -101,9 +107,17 @@ ChannelStyle readChannel(const std::string& name, const std::string& text) {
   return channel;
 }
 
+std::string withFunction(const std::string& text, const std::function<std::string(const std::string&)>& change) {
+  ChannelStyle channel = readChannel("channel", text);
+  if (channel.function.empty()) return text;
+  channel.function = change(channel.function);
+  return channelText(channel);
+}
+
 std::string channelText(const ChannelStyle& channel) {
   std::vector<std::string> words{channel.name};
   const std::string weight = channel.weight != 1.0f ? fmt::format("@{}", channel.weight) : "";
+  if (!channel.function.empty()) words.push_back(channel.function);
   if (channel.color || !weight.empty()) words.push_back(fmt::format("{}{}", channel.color ? colorText(*channel.color) : "", weight));
   if (channel.window) words.push_back(fmt::format("{},{}", (*channel.window)[0], (*channel.window)[1]));
   if (channel.emits) words.emplace_back(kEmission);

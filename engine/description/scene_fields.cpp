@@ -105,7 +105,7 @@ void addClassification(std::vector<SceneField>& fields) {
       section.add("labels", &Classified::labels, Codec<Labels>{.form = kLabelsForm, .read = readLabels, .text = labelsText});
   labels.excludes = {"transfer-function", "iso", "albedo-grid", "window", "invert"};
   SceneField& channels = section.add(
-      "channel", Kind::Value, kChannelForm,
+      "channel", Kind::Channel, kChannelForm,
       [](Classified& classified, const Texts& given) {
         classified.channels.clear();
         for (const std::string& one : given) classified.channels.push_back(readChannel(marked("channel"), one));

@@ -39,6 +39,7 @@ inline const Words<PngBits> kPngBitsWords{{"8", "16"}};
 struct SceneField {
   enum class Kind {
     Value,     ///< numbers or words
+    Channel,   ///< how a channel is drawn (label_words.h), which may name a transfer function
     Keys,      ///< KEY=VALUE with commas between them
     Volumes,   ///< another volume: a file with KEY=VALUE behind it, or JSON that begins with {
     Name,      ///< a name, whatever it looks like

@@ -9,6 +9,7 @@
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
 #include "engine/volume/histogram.h"
+#include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
 
@@ -29,16 +30,52 @@ std::array<float, 2> automaticWindow(const ScalarBricks& values) {
 
 /// A channel as it adds to the sums.
 struct Part {
+  /// Intensity times weight, and the colour.
+  struct Amount {
+    float amount = 0.0f;
+    glm::vec3 color{0.0f};
+  };
+  static constexpr int kIntervals = 4096;
+
   const ScalarBricks* values;
   std::array<float, 2> window;
-  glm::vec3 color;
-  float weight;
+  std::vector<Amount> amounts;  ///< over the window: at its ends only, or with a transfer function at the ends of kIntervals
 
-  float at(float scalar) const {
-    if (scalar == kInactiveVoxel || !(window[0] < window[1])) return 0.0f;
-    return weight * std::clamp((scalar - window[0]) / (window[1] - window[0]), 0.0f, 1.0f);
+  Amount at(float scalar) const {
+    if (scalar == kInactiveVoxel || !(window[0] < window[1])) return {};
+    const float place = std::clamp((scalar - window[0]) / (window[1] - window[0]), 0.0f, 1.0f) * float(amounts.size() - 1);
+    const std::size_t before = std::min(std::size_t(place), amounts.size() - 2);
+    const float after = place - float(before);
+    return {std::lerp(amounts[before].amount, amounts[before + 1].amount, after),
+            glm::mix(amounts[before].color, amounts[before + 1].color, after)};
   }
 };
+
+Part partOf(const ChannelStyle& style, std::size_t place, const ScalarBricks& values, const glm::dmat4& indexToWorld) {
+  const glm::vec3 color = channelColor(style, place);
+  if (style.function.empty())
+    return {&values, style.window ? *style.window : automaticWindow(values), {{0.0f, color}, {style.weight, color}}};
+  const TransferCurves curves = readTransferCurves(style.function);
+  std::array<float, 2> window{float(curves.window.low), float(curves.window.high)};
+  if (style.window)
+    window = *style.window;
+  else if (curves.range != TransferCurves::Range::Values)
+    window = automaticWindow(values);
+  Part part{&values, window, {}};
+  if (!(window[0] < window[1])) return part;
+  Volume channel{.dimensions = values.dimensions(), .indexToWorld = indexToWorld, .scalars = values};
+  const Classification classification{.transferFunction =
+                                          fitted(curves, channel, {.window = ValueWindow{double(window[0]), double(window[1])}})};
+  std::vector<ClassifiedVoxel> entries;
+  double largest = 0.0;
+  for (int i = 0; i <= Part::kIntervals; ++i) {
+    entries.push_back(classify(classification, std::lerp(window[0], window[1], float(i) / float(Part::kIntervals))));
+    largest = std::max(largest, entries.back().extinction);
+  }
+  for (const ClassifiedVoxel& entry : entries)
+    part.amounts.push_back({style.weight * float(largest > 0.0 ? entry.extinction / largest : 0.0), color * glm::vec3(entry.color)});
+  return part;
+}
 
 }  // namespace
 
@@ -47,6 +84,10 @@ glm::vec3 automaticChannelColor(std::size_t place) {
       glm::vec3(0.05f, 1.0f, 0.05f), glm::vec3(1.0f, 0.05f, 1.0f), glm::vec3(0.05f, 0.9f, 1.0f), glm::vec3(1.0f, 0.8f, 0.05f),
       glm::vec3(1.0f, 0.1f, 0.05f),  glm::vec3(0.1f, 0.2f, 1.0f),  glm::vec3(1.0f, 0.4f, 0.05f), glm::vec3(0.9f)};
   return kColors[place % kColors.size()];
+}
+
+glm::vec3 channelColor(const ChannelStyle& channel, std::size_t place) {
+  return channel.color.value_or(channel.function.empty() ? automaticChannelColor(place) : glm::vec3(1.0f));
 }
 
 std::size_t channelNumber(const ChannelStyle& channel, std::size_t count) {
@@ -72,9 +113,7 @@ void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std:
   FV_CHECK_EQ(channels.size(), values.size());
   const bool emits = doEmit(channels);
   std::vector<Part> parts;
-  for (std::size_t i = 0; i < channels.size(); ++i)
-    parts.push_back({&values[i], channels[i].window ? *channels[i].window : automaticWindow(values[i]),
-                     channels[i].color.value_or(automaticChannelColor(i)), channels[i].weight});
+  for (std::size_t i = 0; i < channels.size(); ++i) parts.push_back(partOf(channels[i], i, values[i], volume.indexToWorld));
   ScalarBricks sums(volume.dimensions, values.front().corner());
   for (const ScalarBricks& channel : values)
     for (std::size_t brick = 0; brick < channel.bricks().size(); ++brick) sums.makeBrick(channel.cell(brick));
@@ -87,9 +126,9 @@ void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std:
       float sum = 0.0f;
       glm::vec3 color(0.0f);
       for (std::size_t i = 0; i < parts.size(); ++i) {
-        const float amount = of[i] == nullptr ? 0.0f : parts[i].at((*of[i])[voxel]);
-        sum += amount;
-        color += amount * parts[i].color;
+        const Part::Amount part = of[i] == nullptr ? Part::Amount() : parts[i].at((*of[i])[voxel]);
+        sum += part.amount;
+        color += part.amount * part.color;
       }
       sums.bricks()[brick][voxel] = sum > 0.0f ? sum : kInactiveVoxel;
       for (int c = 0; c < 3; ++c) colors.values[std::size_t(c)].bricks()[brick][voxel] = sum > 0.0f ? color[c] / sum : kInactiveVoxel;

@@ -72,8 +72,8 @@ ChosenChannels chosenChannels(const fs::path& file, ScanHeader& header, const Sc
   const auto add = [&](ChannelStyle style, int number) {
     if (!header.channels.empty()) {
       const ScanChannel& described = header.channels[std::size_t(number)];
-      if (!style.color) style.color = described.color;
-      if (!style.window) style.window = described.window;
+      if (!style.color && style.function.empty()) style.color = described.color;
+      if (!style.window && style.function.empty()) style.window = described.window;
     }
     chosen.styles.push_back(std::move(style));
     chosen.numbers.push_back(number);

@@ -105,9 +105,12 @@ SceneDescription labelled() {
   scene.classification.labels = Labels{.showsAll = true, .styles = {{-3, {.opacity = 0.5f}}, {7, {.color = glm::vec3(1, 0, 0)}}}};
   return scene;
 }
-SceneDescription dyed() {
+SceneDescription dyed(const TemporaryFolder& folder) {
   SceneDescription scene;
-  scene.classification.channels = {{.name = "0"}, {.name = "gfp", .weight = 2.5f, .window = std::array{0.25f, 4000.0f}, .emits = true}};
+  scene.classification.channels = {{.name = "0"},
+                                   {.name = "1", .function = (folder / "f.json").string()},
+                                   {.name = "ct", .function = "ct-bone"},
+                                   {.name = "gfp", .weight = 2.5f, .window = std::array{0.25f, 4000.0f}, .emits = true}};
   return scene;
 }
 
@@ -133,7 +136,8 @@ nlohmann::json jsonIn(const std::filesystem::path& file) {
 
 TEST(SceneJson, DescriptionsSurviveTheWayToAFileAndBack) {
   const TemporaryFolder folder;
-  for (const SceneDescription& scene : {everything(folder), others(folder), labelled(), dyed(), surface(), slice(), SceneDescription{}}) {
+  for (const SceneDescription& scene :
+       {everything(folder), others(folder), labelled(), dyed(folder), surface(), slice(), SceneDescription{}}) {
     writeScene(folder / "s.json", scene);
     EXPECT_EQ(readScene(folder / "s.json"), scene) << readBytes(folder / "s.json");
   }
@@ -173,7 +177,7 @@ TEST(SceneJson, AKeyWithoutEffectOfAnEarlierVersionIsReadWithOneSentence) {
 
 TEST(SceneJson, TheTestsAboveHaveEveryField) {
   const TemporaryFolder folder;
-  const std::array scenes{everything(folder), others(folder), labelled(), dyed(), surface(), slice()};
+  const std::array scenes{everything(folder), others(folder), labelled(), dyed(folder), surface(), slice()};
   for (const SceneField& field : sceneFields())
     EXPECT_TRUE(std::ranges::any_of(scenes, [&](const SceneDescription& scene) { return !field.texts(scene).empty(); }))
         << field.section << "." << field.name;

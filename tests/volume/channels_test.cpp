@@ -4,6 +4,9 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+#include <fstream>
+
 #include "engine/description/label_words.h"
 #include "engine/description/scene_description.h"
 #include "engine/volume/volume_of_scalars.h"
@@ -30,10 +33,12 @@ std::vector<ScalarBricks> ramps(glm::ivec3 size) {
 }
 
 TEST(Channels, WordsAreReadAndWritten) {
-  for (const std::string text : {"dapi", "0:#0000ff", "gfp:#00ff00@0.5:100,4000:emission", "2:@3", "a b:10.5,20", "x:emission"})
+  for (const std::string text : {"dapi", "0:#0000ff", "gfp:#00ff00@0.5:100,4000:emission", "2:@3", "a b:10.5,20", "x:emission",
+                                 "ct:ct-bone:-100,900", "ct:../bone.json:#ff0000@2", "ct:ct-bone:@0.5"})
     EXPECT_EQ(channelText(channel(text)), text);
+  EXPECT_EQ(channelText(channel("ct:ct-bone@0.5")), "ct:ct-bone:@0.5");
   EXPECT_EQ(channelText(channel("dapi:emission:1,2:blue")), "dapi:#0000ff:1,2:emission") << "in any order";
-  for (const std::string text : {"", ":red", "a:", "a:nocolour", "a:2,1", "a:1,2,3", "a:red@-1", "a:red@x"})
+  for (const std::string text : {"", ":red", "a:", "a:2,1", "a:1,2,3", "a:red@-1", "a:red@x"})
     expectRefusal([&] { channel(text); }, ErrorKind::Usage, {"channel"});
 }
 
@@ -50,6 +55,29 @@ TEST(Channels, ExtinctionsAddUpAndColoursAreWeightedByThem) {
     EXPECT_NEAR(seen.color.b * seen.extinction, blue, 1e-5);
     EXPECT_EQ(seen.emission, glm::dvec3(0.0));
   }
+}
+
+TEST(Channels, TransferFunctionsGiveColoursAndIntensitiesByValue) {
+  const std::string file = testing::TempDir() + "channel_function.json";
+  std::ofstream(file) << R"({"range": [0, 10], "unit_distance": 1, "opacity": [[0, 0], [0.5, 0.5], [1, 0.9]],
+                             "color": [[0, 1, 0, 0], [1, 0, 1, 0]]})";
+  const Volume volume = volumeOfChannels(ramps({11, 5, 9}), glm::dmat4(1.0), {channel("0:" + file), channel("1:blue@2:0,40")});
+  const Classification classification{.densityScale = 3.0};
+  const VoxelClassifier classifier(classification, volume);
+  for (const glm::ivec3 v : {glm::ivec3(0, 1, 0), glm::ivec3(5, 0, 3), glm::ivec3(10, 1, 7), glm::ivec3(5, 2, 8)}) {
+    const double opacity = v.x == 0 ? 0.0 : v.x == 5 ? 0.5 : 0.9, own = 3.0 * std::log(1.0 - opacity) / std::log(1.0 - 0.9);
+    const double blue = 3.0 * 2.0 * std::min(10.0 * v.y / 40.0, 1.0);
+    const ClassifiedVoxel seen = classifier.at(v);
+    EXPECT_NEAR(seen.extinction, own + blue, 1e-3);
+    EXPECT_NEAR(seen.color.r * seen.extinction, own * (1.0 - v.x / 10.0), 1e-3);
+    EXPECT_NEAR(seen.color.g * seen.extinction, own * v.x / 10.0, 1e-3);
+    EXPECT_NEAR(seen.color.b * seen.extinction, blue, 1e-3);
+  }
+  expectRefusal(
+      [&] {
+        volumeOfChannels(ramps({3, 3, 3}), glm::dmat4(1.0), {channel("0:nocolour"), channel("1")});
+      },
+      ErrorKind::Input, {"nocolour", "preset"});
 }
 
 TEST(Channels, LightAddsUpAndNothingIsDimmed) {
