@@ -76,6 +76,21 @@ TEST_F(MergedTest, TwoFogsThroughEachOtherMatchTheOracle) {
   EXPECT_GE(quality(media, cameraInside(*media.volumes[0], viewOf(media)), gathering({48, 48})), 45.0);
 }
 
+/// Of rays that meet some of the volumes, the last one that they meet is now one volume and now another.
+TEST_F(MergedTest, ThreeFogsMatchTheOracleInAnyOrder) {
+  Media media = twoFogs();
+  const glm::ivec3 n(17, 21, 19);
+  Volume ball = makeVolume(n, turned(-0.4, {-0.3, 0.3, 0.35}, 0.6) * cubeTransform(n), [n](int x, int y, int z) {
+    const glm::dvec3 place = (glm::dvec3(x, y, z) + 0.5) / glm::dvec3(n) - 0.5;
+    return std::max(0.0, 1.0 - 4.0 * glm::dot(place, place));
+  });
+  media.add(ball, {.densityScale = automaticDensityScale(ball, 1.5), .albedo = glm::vec3(0.3f, 0.9f, 0.3f)});
+  const FrameSettings settings = gathering({48, 48});
+  EXPECT_GE(quality(media, viewOf(media), settings), 50.0);
+  Renderer one(device(), media.scene(), {}), other(device(), media.scene(true), {});
+  EXPECT_EQ(one.render(viewOf(media), settings).pixels, other.render(viewOf(media), settings).pixels);
+}
+
 /// Extinctions add up: what is interpolated between the voxels of a dense cloud, too.
 TEST_F(MergedTest, TwoHalvesOfADenseCloudMatchTheOracleOfTheCloud) {
   const Volume cloud = makeProcedural("cloud", 24);
