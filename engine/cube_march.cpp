@@ -59,6 +59,20 @@ bool isRead(const shader::GatherFrame& frame, const VoxelRange& cube) {
   return false;
 }
 
+/// Whether a ray may meet something between the voxels of a cube, of which `read` has those in `box`. It interpolates voxels up to one
+/// beyond the cube, and classifies those by their neighbours.
+bool mayShow(const CubeLevel& level, const Volume& read, const VoxelRange& box, const VoxelRange& cube,
+             const Classification& classification) {
+  constexpr int kReach = 2;
+  const glm::ivec3 low = glm::max(cube.first - kReach, box.first) - box.first, high = glm::min(cube.end + kReach, box.end) - box.first;
+  Volume near = level.outline();
+  near.dimensions = high - low;
+  near.scalars = read.scalars.cropped(low, high);
+  if (near.temperature && read.temperature) near.temperature->values = read.temperature->values.cropped(low, high);
+  const Cells met = metCells(near, classification, 1 << shader::kSkipLevels);
+  return std::ranges::any_of(met.values, [](std::uint8_t isMet) { return isMet != 0; });
+}
+
 /// The part of a rectangle in some rows.
 SampleRectangle inRows(const SampleRectangle& rectangle, glm::ivec2 rows) {
   SampleRectangle result = rectangle;
@@ -157,8 +171,11 @@ void CubeDrawing::State::drawLevel(const Frame& frame, int level, std::span<cons
       voxels = reading.get();
     }
     if (i + 1 < cubes.size()) reading = beginReading(i + 1);
-    drawCube(frame, cubeLevel, inRegion, region, cubes[i], voxels, isLastLevel && i + 1 == cubes.size());
     ++cubesRead[std::size_t(level)];
+    const bool isLast = isLastLevel && i + 1 == cubes.size();
+    const VoxelRange box = withHalo(cubes[i].voxels, cubeLevel.outline().dimensions);
+    if (isLast || mayShow(cubeLevel, voxels, box, cubes[i].voxels, frame.classification))
+      drawCube(frame, cubeLevel, inRegion, region, cubes[i], voxels, isLast);
   }
 }
 
