@@ -47,6 +47,24 @@ SlabExtent extentOf(const PixelRays& rays, const DeviceVolume& volume, const Wid
   return extent;
 }
 
+/// Whether some ray may meet two of the volumes. Generous: merge_rays.comp decides for each ray.
+bool someRaysMeetTwo(std::span<const MergedPass::Part> parts, const Camera& camera) {
+  constexpr int kMoreVoxels = 2, kMoreSamples = 2;
+  std::vector<SampleRectangle> seen;
+  for (const MergedPass::Part& part : parts) {
+    const WideBox box(*part.onDevice, part.frame.coarsest);
+    const glm::ivec3 low(-box.margin - kMoreVoxels), high = box.dimensions - box.margin + kMoreVoxels;
+    const auto own = samplesThatSee(*part.onDevice, camera, part.frame, low, high);
+    if (!own) continue;
+    for (const SampleRectangle& other : seen)
+      if (glm::all(glm::lessThan(own->first - kMoreSamples, other.first + other.extent)) &&
+          glm::all(glm::lessThan(other.first, own->first + own->extent + kMoreSamples)))
+        return true;
+    seen.push_back(*own);
+  }
+  return false;
+}
+
 }  // namespace
 
 SlabPlan planSlabs(std::span<const SlabExtent> extents, int most) {
@@ -92,8 +110,9 @@ void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Ca
   }
   const SlabPlan plan = planSlabs(extents, mostSlabs(parts.front().frame, int(parts.size())));
   merge.intervals = int(plan.intervals.size());
-  slabs_ = plan.slabs;
   volumes_ = int(parts.size());
+  mixes_ = someRaysMeetTwo(parts, camera);
+  slabs_ = mixes_ ? plan.slabs : 0;
   std::ranges::copy(plan.intervals, merge.interval);
   tinted_ = std::ranges::any_of(parts, [](const Part& part) { return part.volume->isTinted(); });
   if (merge_.bytes() == 0)
@@ -121,7 +140,7 @@ int MergedPass::mostSlabs(const shader::GatherFrame& frame, int volumes) const {
 }
 
 std::uint64_t MergedPass::entriesOfSlot() const {
-  return std::uint64_t(std::max(volumes_ - 1, 1)) * std::uint64_t(std::max(slabs_, 1));
+  return std::uint64_t(mixes_ ? volumes_ - 1 : 1) * std::uint64_t(std::max(slabs_, 1));
 }
 
 /// How many rows of a dispatch are marched at a time: of workgroups of a list, all of a range of it where there is room for that.
@@ -183,8 +202,8 @@ void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, Gath
       pass_.dispatch(commands, *parts[i].volume, parts[i].frame, target, push);
     };
     march(GatherPass::Variant::Whole, 0);
-    if (i > 0) march(GatherPass::Variant::Merged, int(i));
-    if (i + 1 < parts.size()) march(GatherPass::Variant::Merged, 0);
+    if (mixes_ && i > 0) march(GatherPass::Variant::Merged, int(i));
+    if (mixes_ && i + 1 < parts.size()) march(GatherPass::Variant::Merged, 0);
     commands.barrier(kComputeStage, kComputeStage);
   }
 }

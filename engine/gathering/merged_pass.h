@@ -61,6 +61,7 @@ class MergedPass {
   Buffer entries_, depths_;  ///< vec4 by volume but the last, number and slot; `depths_` only where light has another extinction than alpha
   TexelView entryTexels_, depthTexels_;
   int volumes_ = 0, slabs_ = 0;
+  bool mixes_ = false;  ///< whether some rays may meet several of the volumes
   bool tinted_ = false;
 };
 
