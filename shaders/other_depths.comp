@@ -10,7 +10,7 @@
 
 // Whether the rays hold depths of positions (scalars), or those in front of layers.
 layout(constant_id = 0) const bool kScalars = false;
-layout(constant_id = 2) const bool kAtInfinity = false;  // whether the light is
+layout(constant_id = 2) const bool kAtInfinity = false;  // whether the light is at infinity
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { OtherDepthsPush push; };
@@ -23,14 +23,14 @@ layout(buffer_reference, scalar, buffer_reference_align = 4) buffer LightDepths 
 
 const float kAtSource = 1e-3;  // in voxels: at a smaller distance from a light the direction is undefined
 
-// The direction and the distance, or at infinity a vector of the direction, from a position to the light, in voxels of the other volume.
+// The vector from a position to the light, of a light at infinity its direction, in voxels of the other volume.
 vec3 toLightFrom(vec3 position) {
   const vec3 place = lights[push.light].place;
   return kAtInfinity ? place : place - (position - 0.5 * vec3(other.dimensions - 1));
 }
 
-// What the way from a position to the light has of the box, as factors of `toLight`.
-vec2 wayInBox(vec3 position, vec3 toLight) {
+// The part of the segment from a position to the light that is in the box of the other volume, as multiples of `toLight`; empty if x >= y.
+vec2 segmentInBox(vec3 position, vec3 toLight) {
   vec2 range = vec2(0.0, kAtInfinity ? 3e38 : 1.0);
   for (int c = 0; c < 3; ++c) {
     const float perUnit = 1.0 / (abs(toLight[c]) < 1e-12 ? 1e-12 : toLight[c]);
@@ -64,7 +64,7 @@ vec2 depthsOnPlanes(FaceRays fan, vec3 position, ivec2 planes) {
 // its box, between the rays' depths on the planes in front and behind.
 float depthAt(vec3 position, FaceRays fan) {
   const vec3 toLight = toLightFrom(position);
-  const vec2 way = wayInBox(position, toLight);
+  const vec2 way = segmentInBox(position, toLight);
   if (way.x >= way.y || dot(toLight, toLight) < kAtSource * kAtSource || fan.planeCount == 0) return 0.0;
   position += way.x * toLight;
   const vec3 layer = toLight / max(abs(toLight[fan.axis]), 1e-12);
@@ -85,8 +85,9 @@ vec3 centerOf(ivec3 cell) {
   return other.toOther * (vec3(cell * push.edge) + 0.5 * vec3(extent - 1)) + other.offset;
 }
 
-bool isBehind(vec3 position) {
-  const vec2 way = wayInBox(position, toLightFrom(position));
+// Whether the segment to the light passes through the box of the other volume.
+bool mayBeShadowed(vec3 position) {
+  const vec2 way = segmentInBox(position, toLightFrom(position));
   return way.x < way.y;
 }
 
@@ -111,7 +112,7 @@ void main() {
       if (searches) {
         even = centerOf(min(first + ivec3(x, 0, 0), last));
         odd = centerOf(min(first + ivec3(x + 1, 0, 0), last));
-        searches = !isBehind(even) && !isBehind(odd);
+        searches = !mayBeShadowed(even) && !mayBeShadowed(odd);
         if (searches) x += 2;
         searches = searches && x < kGatherBrickEdge;
       }

@@ -107,8 +107,8 @@ ChannelStyle readChannel(const std::string& name, const std::string& text) {
   return channel;
 }
 
-std::string withFunction(const std::string& text, const std::function<std::string(const std::string&)>& change) {
-  ChannelStyle channel = readChannel("channel", text);
+std::string withFunction(const std::string& name, const std::string& text, const std::function<std::string(const std::string&)>& change) {
+  ChannelStyle channel = readChannel(name, text);
   if (channel.function.empty()) return text;
   channel.function = change(channel.function);
   return channelText(channel);

@@ -23,6 +23,6 @@ inline constexpr const char* kChannelForm = "NAME[:COLOR|FUNCTION][@WEIGHT][:LO,
 ChannelStyle readChannel(const std::string& name, const std::string& text);
 std::string channelText(const ChannelStyle& channel);
 /// The text of a channel with the name of its transfer function changed, if it has one.
-std::string withFunction(const std::string& text, const std::function<std::string(const std::string&)>& change);
+std::string withFunction(const std::string& name, const std::string& text, const std::function<std::string(const std::string&)>& change);
 
 }  // namespace freevoxels

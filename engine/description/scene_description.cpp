@@ -323,9 +323,13 @@ SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCou
 
 std::vector<std::string> functionWarnings(const SceneDescription& description) {
   std::vector<std::string> all;
+  const auto addFunction = [&](const std::string& function) {
+    for (std::string& one : transferWarnings(function)) all.push_back(std::move(one));
+  };
   const auto add = [&](const ClassificationDescription& classification) {
-    if (!classification.transferFunction) return;
-    for (std::string& one : transferWarnings(*classification.transferFunction)) all.push_back(std::move(one));
+    if (classification.transferFunction) addFunction(*classification.transferFunction);
+    for (const ChannelStyle& channel : classification.channels)
+      if (!channel.function.empty()) addFunction(channel.function);
   };
   add(description.classification);
   for (const AddedVolume& added : description.added) add(added.classification);

@@ -93,7 +93,8 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
   }
   if (value.is_string()) {
     const auto text = value.get<std::string>();
-    if (field.kind == Kind::Channel) return withFunction(text, [&](const std::string& file) { return namedFrom(folder, true, file); });
+    if (field.kind == Kind::Channel)
+      return withFunction(name, text, [&](const std::string& file) { return namedFrom(folder, true, file); });
     return field.isFile() ? namedFrom(folder, field.kind == Kind::Function, text) : text;
   }
   if (!field.isFile() && value.is_number()) return value.dump();
@@ -172,7 +173,7 @@ OrderedJson fieldJson(const SceneField& field, const std::string& text, const st
   }
   if (field.kind == Kind::Name) return text;
   if (field.kind == Kind::Channel && folder)
-    return withFunction(text, [&](const std::string& file) { return namedFor(*folder, true, file); });
+    return withFunction(field.name, text, [&](const std::string& file) { return namedFor(*folder, true, file); });
   if (field.kind != Kind::Keys) return numbersOrText(text, separatorOf(field));
   Json object = Json::object();
   for (const auto& [key, value] : readKeys(field.name, field.form, text)) object[key] = numbersOrText(value, ',');

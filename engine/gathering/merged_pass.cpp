@@ -47,7 +47,7 @@ SlabExtent extentOf(const PixelRays& rays, const DeviceVolume& volume, const Wid
   return extent;
 }
 
-/// Whether some ray may meet two of the volumes. Generous: merge_rays.comp decides for each ray.
+/// Whether some ray may meet two of the volumes. Conservative: merge_rays.comp decides for each ray.
 bool someRaysMeetTwo(std::span<const MergedPass::Part> parts, const Camera& camera) {
   constexpr int kMoreVoxels = 2, kMoreSamples = 2;
   std::vector<SampleRectangle> seen;
@@ -108,11 +108,11 @@ void MergedPass::begin(Commands& commands, std::span<const Part> parts, const Ca
     merge.boxes[i].dimensions = box.dimensions;
     extents.push_back(extentOf(rays, volume, box));
   }
-  const SlabPlan plan = planSlabs(extents, mostSlabs(parts.front().frame, int(parts.size())));
-  merge.intervals = int(plan.intervals.size());
   volumes_ = int(parts.size());
-  mixes_ = someRaysMeetTwo(parts, camera);
-  slabs_ = mixes_ ? plan.slabs : 0;
+  const SlabPlan plan = planSlabs(extents, mostSlabs(parts.front().frame));
+  merge.intervals = int(plan.intervals.size());
+  mayOverlap_ = someRaysMeetTwo(parts, camera);
+  slabs_ = mayOverlap_ ? plan.slabs : 0;
   std::ranges::copy(plan.intervals, merge.interval);
   tinted_ = std::ranges::any_of(parts, [](const Part& part) { return part.volume->isTinted(); });
   if (merge_.bytes() == 0)
@@ -132,15 +132,14 @@ std::uint64_t MergedPass::mostEntries() const {
 }
 
 /// So many slabs that there is room for a row of workgroups.
-int MergedPass::mostSlabs(const shader::GatherFrame& frame, int volumes) const {
+int MergedPass::mostSlabs(const shader::GatherFrame& frame) const {
   const std::uint64_t columns = std::uint64_t(frame.seenExtent.x + kTile);
-  const std::uint64_t slabs =
-      mostEntries() / (2 * std::uint64_t(std::max(volumes - 1, 1)) * columns * kTile);  // with tinted light, twice as much
+  const std::uint64_t slabs = mostEntries() / (2 * std::uint64_t(listedVolumes()) * columns * kTile);  // with tinted light, twice as much
   return int(std::clamp<std::uint64_t>(slabs, 2 * shader::kMaxSlabIntervals, shader::kMaxSlabs));
 }
 
 std::uint64_t MergedPass::entriesOfSlot() const {
-  return std::uint64_t(mixes_ ? volumes_ - 1 : 1) * std::uint64_t(std::max(slabs_, 1));
+  return std::uint64_t(listedVolumes()) * std::uint64_t(std::max(slabs_, 1));
 }
 
 /// How many rows of a dispatch are marched at a time: of workgroups of a list, all of a range of it where there is room for that.
@@ -167,7 +166,7 @@ void MergedPass::makeRoom(const shader::GatherFrame& frame) {
 
 void MergedPass::makeRoom(std::uint64_t slots) {
   growBuffer(device_, rays_, slots * sizeof(std::uint32_t), "rays of several volumes");
-  growBuffer(device_, counts_, slots * std::uint64_t(volumes_) * sizeof(std::uint32_t), "entries of rays");
+  growBuffer(device_, counts_, slots * std::uint64_t(listedVolumes()) * sizeof(std::uint32_t), "entries of rays");
   if (growBuffer(device_, entries_, slots * entriesOfSlot() * sizeof(glm::vec4), "slabs", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT))
     entryTexels_ = TexelView(device_, entries_);
   if (tinted_ && growBuffer(device_, depths_, slots * entriesOfSlot() * sizeof(glm::vec4), "optical depths of slabs",
@@ -202,8 +201,8 @@ void MergedPass::marchBand(Commands& commands, std::span<const Part> parts, Gath
       pass_.dispatch(commands, *parts[i].volume, parts[i].frame, target, push);
     };
     march(GatherPass::Variant::Whole, 0);
-    if (mixes_ && i > 0) march(GatherPass::Variant::Merged, int(i));
-    if (mixes_ && i + 1 < parts.size()) march(GatherPass::Variant::Merged, 0);
+    if (mayOverlap_ && i > 0) march(GatherPass::Variant::Merged, int(i));
+    if (mayOverlap_ && i + 1 < parts.size()) march(GatherPass::Variant::Merged, 0);
     commands.barrier(kComputeStage, kComputeStage);
   }
 }

@@ -4,6 +4,7 @@
 // media are mixed: extinctions, and the light that they scatter and emit, add up (engine/docs/gather.md, "Several volumes"). Rays that meet
 // one volume only are those of its own frame.
 
+#include <algorithm>
 #include <span>
 #include <vector>
 
@@ -47,7 +48,9 @@ class MergedPass {
   void march(Commands& commands, std::span<const Part> parts, glm::ivec2 extent, const shader::SamplesPush& samples);
   void marchBand(Commands& commands, std::span<const Part> parts, GatherPass::Dispatch target, const shader::SamplesPush& samples);
   std::uint64_t mostEntries() const;
-  int mostSlabs(const shader::GatherFrame& frame, int volumes) const;
+  /// The number of volumes that may store lists, at least 1.
+  int listedVolumes() const { return std::max(volumes_ - 1, 1); }
+  int mostSlabs(const shader::GatherFrame& frame) const;
   std::uint64_t entriesOfSlot() const;
   int rowsOfBand(int columns, int rows, bool listed) const;
   void makeRoom(const shader::GatherFrame& frame);
@@ -61,7 +64,7 @@ class MergedPass {
   Buffer entries_, depths_;  ///< vec4 by volume but the last, number and slot; `depths_` only where light has another extinction than alpha
   TexelView entryTexels_, depthTexels_;
   int volumes_ = 0, slabs_ = 0;
-  bool mixes_ = false;  ///< whether some rays may meet several of the volumes
+  bool mayOverlap_ = false;  ///< whether some rays may meet several of the volumes
   bool tinted_ = false;
 };
 

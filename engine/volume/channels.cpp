@@ -47,7 +47,7 @@ struct Part {
     const std::size_t before = std::min(std::size_t(place), amounts.size() - 2);
     const float after = place - float(before);
     return {std::lerp(amounts[before].amount, amounts[before + 1].amount, after),
-            glm::mix(amounts[before].color, amounts[before + 1].color, after)};
+            amounts[before].color + after * (amounts[before + 1].color - amounts[before].color)};
   }
 };
 
