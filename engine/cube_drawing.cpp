@@ -37,10 +37,10 @@ const ScatteringSolver* CubeDrawing::State::solveScattering(const FrameSettings&
     const CubeLevel& base = levelAt(0);
     const Volume& outline = base.outline();
     ScatteringMedium medium(outline.dimensions, outline.indexToWorld);
-    for (std::size_t i = 0; i < base.cubes.size(); ++i) {
-      if (progress) progress("reading cells", double(i) / double(base.cubes.size()));
-      const VoxelRange cube = cubeVoxels(base.cubes[i], outline.dimensions);
-      medium.add(base.read(cube), cube.first, classification);
+    const std::span<const VoxelRange> cubes = base.cubes.pieces();
+    for (std::size_t i = 0; i < cubes.size(); ++i) {
+      if (progress) progress("reading cells", double(i) / double(cubes.size()));
+      medium.add(base.read(cubes[i]), cubes[i].first, classification);
     }
     scattering.emplace(device, std::move(medium));
   }

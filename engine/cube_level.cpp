@@ -1,20 +1,14 @@
 #include "engine/cube_level.h"
 
 #include <algorithm>
-#include <tuple>
 #include <utility>
 
 namespace freevoxels {
 
 CubeLevel::CubeLevel(std::shared_ptr<const VolumeSource> from, int level, const Classification& classification)
     : source{.source = std::move(from), .level = level, .classification = classification},
-      onDevice(outlineOnDevice(outline(), classification)) {
-  using Bricks = SparseGrid<std::uint8_t>;
-  static_assert(kCubeEdge == Bricks::kNodeEdge * ScalarBricks::kEdge);
-  const Bricks around = bricksAround(source);
-  cubes.assign(around.places().begin(), around.places().end());
-  std::ranges::sort(cubes, {}, [](glm::ivec3 cube) { return std::tuple(cube.z, cube.y, cube.x); });
-}
+      onDevice(outlineOnDevice(outline(), classification)),
+      cubes(bricksAround(source), outline().dimensions) {}
 
 void CubeLevel::prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times,
                               const Progress& progress) {

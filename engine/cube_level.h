@@ -1,5 +1,5 @@
 #pragma once
-// A level of a volume that is drawn cube by cube: which cubes hold data, and the light that reaches them, which is swept through the
+// A level of a volume that is drawn piece by piece: the pieces that hold data, and the light that reaches them, which is swept through the
 // whole level.
 
 #include <memory>
@@ -8,23 +8,16 @@
 
 #include "engine/attenuation/plane_sweep.h"
 #include "engine/octree/device_volume.h"
+#include "engine/piece_tree.h"
 #include "engine/scene/lighting.h"
 
 namespace freevoxels {
-
-/// Voxels along a cube's edge.
-inline constexpr int kCubeEdge = 64;
-
-/// The voxels of the cube with this number along each axis.
-inline VoxelRange cubeVoxels(glm::ivec3 cell, glm::ivec3 dimensions) {
-  return {cell * kCubeEdge, glm::min((cell + 1) * kCubeEdge, dimensions)};
-}
 
 /// A level of a volume as frames read it.
 struct CubeLevel {
   SourceLevel source;
   DeviceVolume onDevice;
-  std::vector<glm::ivec3> cubes;                    ///< in and beside which there are voxels with data
+  PieceTree cubes;                                  ///< in and beside which there are voxels with data
   std::vector<std::unique_ptr<SweptLight>> lights;  ///< of all lights of the last frame
 
   CubeLevel(std::shared_ptr<const VolumeSource> source, int level, const Classification& classification);

@@ -17,28 +17,16 @@ namespace {
 constexpr int kBrick = ScalarBricks::kEdge;
 static_assert(CubeDrawing::kHalo % kBrick == 0);
 
-/// How far a cube is behind the eye's, in cubes: rays meet cubes in ascending order.
-int behindEye(glm::ivec3 cell, const RaySource& eye) {
-  int sum = 0;
-  for (int axis = 0; axis < 3; ++axis) {
-    if (eye.atInfinity)
-      sum += eye.place[axis] > 0.0 ? -cell[axis] : cell[axis];
-    else
-      sum += std::abs(cell[axis] - int(std::floor(std::clamp(eye.place[axis] / kCubeEdge, -1e8, 1e8))));
-  }
-  return sum;
-}
-
 /// Positions on rays are counted from a place of their own in each region of this edge, in voxels, where the volume has an edge of more
 /// than kLongestRegion: from far away, single precision would not tell neighbouring positions apart.
 constexpr int kRegionEdge = 1 << 10, kLongestRegion = 1 << 13;
-static_assert(kRegionEdge % kCubeEdge == 0);
 
 /// The region of a cube, with the voxels around it that rays read.
 VoxelRange regionOf(const VoxelRange& cube, glm::ivec3 dimensions) {
   if (std::max({dimensions.x, dimensions.y, dimensions.z}) <= kLongestRegion) return {glm::ivec3(0), dimensions};
   const glm::ivec3 first = cube.first / kRegionEdge * kRegionEdge;
-  return {glm::max(first - kCubeEdge, 0), first + glm::min(dimensions - first, kRegionEdge + kCubeEdge)};
+  constexpr int kBeyond = PieceTree::kLongestEdge + CubeDrawing::kHalo;
+  return {glm::max(first - CubeDrawing::kHalo, 0), first + glm::min(dimensions - first, kRegionEdge + kBeyond)};
 }
 
 /// The part of a level in a region, as a volume of its own.
@@ -134,11 +122,8 @@ std::vector<CubeDrawing::State::Cube> CubeDrawing::State::cubesOf(const Frame& f
   const CubeLevel& cubeLevel = levelAt(level);
   const RaySource eye = eyeSource(frame.camera, cubeLevel.outline().indexToWorld);
   const shader::GatherFrame whole = frameOf(frame, cubeLevel, level, {glm::ivec3(0), cubeLevel.outline().dimensions});
-  std::vector<glm::ivec3> cells = cubeLevel.cubes;
-  std::ranges::stable_sort(cells, {}, [&](glm::ivec3 cell) { return behindEye(cell, eye); });
   std::vector<Cube> cubes;
-  for (const glm::ivec3 cell : cells) {
-    const VoxelRange voxels = cubeVoxels(cell, cubeLevel.outline().dimensions);
+  for (const VoxelRange& voxels : cubeLevel.cubes.inOrder(eye)) {
     if (!isRead(whole, voxels)) continue;
     if (const auto seen = samplesThatSee(cubeLevel.onDevice, frame.camera, whole, voxels.first, voxels.end))
       if (const SampleRectangle own = inRows(*seen, frame.rows); own.extent.y > 0)

@@ -14,8 +14,8 @@ std::uint64_t CubeDrawing::State::mostBricks() {
   const CubeLevel& base = levelAt(0);
   const SparseGrid<std::uint8_t> bricks = source->bricks();
   std::uint64_t most = 0;
-  for (const glm::ivec3 cube : base.cubes) {
-    const VoxelRange box = withHalo(cubeVoxels(cube, base.outline().dimensions), base.outline().dimensions);
+  for (const VoxelRange& cube : base.cubes.pieces()) {
+    const VoxelRange box = withHalo(cube, base.outline().dimensions);
     const glm::ivec3 first = box.first / kBrick, end = (box.end + kBrick - 1) / kBrick;
     std::uint64_t count = 0;
     for (glm::ivec3 brick = first; brick.z < end.z; ++brick.z)
@@ -69,7 +69,7 @@ Error CubeDrawing::withNeed(const Error& error, const Camera& camera, const Fram
 
 VolumeMemory CubeDrawing::memory() const {
   const DeviceVolume& whole = state_->levelAt(0).onDevice;
-  const HierarchyLayout hierarchy(glm::min(whole.layout.dimensions, kCubeEdge + 2 * kHalo));
+  const HierarchyLayout hierarchy(glm::min(whole.layout.dimensions, PieceTree::kCubeEdge + 2 * kHalo));
   std::vector<std::uint64_t> blocks(hierarchy.levels.size(), 0);
   blocks.front() = hierarchy.levels.front().voxels();
   VolumeMemory memory = volumeMemory(hierarchy, blocks, state_->table.directions, storedKinds(whole), sweepStyle(state_->device));

@@ -43,8 +43,8 @@ void logCubes(const Renderer& renderer) {
   const std::vector<std::size_t> counts = renderer.cubesRead();
   for (std::size_t level = 0; level < counts.size(); ++level)
     if (counts[level] > 0)
-      spdlog::debug("{} cubes of {}³ blocks drawn for the last frame, each block 2^{} voxels of what was opened along an edge",
-                    counts[level], kCubeEdge, level);
+      spdlog::debug("{} cubes of up to {}³ blocks drawn for the last frame, each block 2^{} voxels of what was opened along an edge",
+                    counts[level], PieceTree::kLongestEdge, level);
 }
 
 }  // namespace

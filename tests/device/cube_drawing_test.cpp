@@ -83,7 +83,7 @@ TEST_F(CubeDrawingTest, VoxelsThatAreClassifiedBeforehandAreTheImageOfTheWholeVo
 
 TEST_F(CubeDrawingTest, FiresAreTheImageOfTheWholeVolumeWithAndWithoutLight) {
   const Volume volume = makeProcedural("fire", 128);
-  ASSERT_GT(std::max({volume.dimensions.x, volume.dimensions.y, volume.dimensions.z}), kCubeEdge);
+  ASSERT_GT(std::max({volume.dimensions.x, volume.dimensions.y, volume.dimensions.z}), PieceTree::kCubeEdge);
   Classification classification{.densityScale = automaticDensityScale(volume, 2.0), .albedo = glm::vec3(0.8f)};
   classification.emission = Emission{.strength = automaticEmissionStrength(volume, classification, {})};
   const Camera camera = framingCamera(volume, 35.0, 25.0, 1.2, {});
