@@ -195,9 +195,7 @@ class Survey {
       hottest_.name = brightest_.volume->temperature->name;
       volume.temperature = hottest_;
     }
-    volume.scalars = ScalarBricks(volume.dimensions);
-    if (volume.temperature) volume.temperature->values = ScalarBricks(volume.dimensions);
-    if (volume.albedo) volume.albedo->values.fill(ScalarBricks(volume.dimensions));
+    forEachGrid([&](ScalarBricks& values) { values = ScalarBricks(volume.dimensions); }, volume);
     volume.warnings.clear();
     volume.nanVoxels = volume.negativeVoxels = volume.overflownVoxels = volume.outlierVoxels = 0;
   }

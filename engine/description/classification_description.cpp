@@ -63,7 +63,7 @@ std::optional<TransferFunction> functionToDraw(const ClassificationDescription& 
 
 /// Fails for labels and channels of a volume that was read without, and for a transfer function of one that was read with channels.
 void checkMade(const ClassificationDescription& given, const Volume& volume) {
-  const bool isMade = volume.albedo && volume.albedo->isMade;
+  const bool isMade = volume.madeOf != MadeOf::Grids;
   if (((given.labels && !given.labels->isNone()) || !given.channels.empty()) && !isMade)
     fail(ErrorKind::Usage, "{} says how the values of a volume are read, and {} has been read without: give it where that is opened",
          Parameter(given.channels.empty() ? "labels" : "channel"), volume.source);
@@ -123,7 +123,7 @@ Classification ClassificationDescription::resolveProjected(const Volume& volume,
 Classification ClassificationDescription::resolveSliced(const Volume& volume) const {
   Classification classification;
   checkMade(*this, volume);
-  if (volume.albedo && volume.albedo->isMade) return classification;
+  if (volume.madeOf != MadeOf::Grids) return classification;
   if (volume.classificationIsFixed)
     fail(ErrorKind::Usage, "{} shows values, and {} was baked for one classification without them: bake it with {}", Parameter("slice"),
          volume.source, Parameter("keep-scalars"));
@@ -146,7 +146,7 @@ void ClassificationDescription::check(const InputDescription& input) const {
       fail(ErrorKind::Usage, "{} says how values are read, and '{}' is a baked volume: give it to 'freevoxels bake'", Parameter(name),
            input.volume);
   if (channels.empty()) return;
-  doEmit(channels);
+  checkCount(channels);
   if (kind != VolumeKind::OpenVdb && kind != VolumeKind::Scan)
     fail(ErrorKind::Usage, "{} names grids of an OpenVDB file or channels of a scan, and '{}' has one", Parameter("channel"), input.volume);
   if (input.grid) fail(ErrorKind::Usage, "{} and {} exclude each other: channels are grids", Parameter("channel"), Parameter("grid"));

@@ -38,9 +38,8 @@ ClassificationDescription resolvedClassification(const ClassificationDescription
     return description;
   }
   const glm::vec3 albedo = classification.albedo;
-  const bool isMade = scene.volume->albedo && scene.volume->albedo->isMade;
-  const bool hasLabels = isMade && scene.volume->albedo->name != kChannelsName;
-  const bool hasGrid = scene.volume->albedo && !isMade && !scene.volume->classification;
+  const bool hasLabels = scene.volume->madeOf == MadeOf::Labels;
+  const bool hasGrid = scene.volume->albedo && scene.volume->madeOf == MadeOf::Grids && !scene.volume->classification;
   return {.densityScale = classification.densityScale,
           .albedo = glm::dvec3(shortest(albedo.r), shortest(albedo.g), shortest(albedo.b)),
           .albedoGrid = hasGrid ? std::optional(scene.volume->albedo->name) : given.albedoGrid,
@@ -122,18 +121,28 @@ SceneDescription SceneDescription::of(const std::string& volume) const {
   return result;
 }
 
+std::vector<ChannelStyle> SceneDescription::shownChannels() const {
+  if (input.volume.empty() || input.kind() != VolumeKind::Scan) return classification.channels;
+  ScanRequest request = input.scanRequest(kMaxNumberedVoxels);
+  request.channels = classification.channels;
+  return scanChannels(input.volume, request);
+}
+
+bool channelsAddUp(const SceneDescription& scene) {
+  const std::vector<ChannelStyle>& channels = scene.classification.channels;
+  const bool scatters = channels.empty() || !std::ranges::all_of(channels, &ChannelStyle::emits);
+  return !scatters || scene.lighting.unlit || scene.lighting.scattering == 1;
+}
+
 void checkLayers(const SceneDescription& scene, const Aovs& aovs) {
   if (aovs.lights && scene.lighting.unlit)
     fail(ErrorKind::Usage, "{} are layers of light, and there is none: leave {} out", Parameter("aov", "lights"), Parameter("unlit"));
   if (!aovs.channels) return;
   const Parameter aov("aov", "channels");
-  const std::vector<ChannelStyle>& channels = scene.classification.channels;
-  const InputDescription& input = scene.input;
-  const bool isScan = !input.volume.empty() && input.kind() == VolumeKind::Scan;
-  if (channels.empty() && (!isScan || scanChannels(input.volume, input.scanRequest(kMaxNumberedVoxels)).empty()))
+  if (scene.shownChannels().empty())
     fail(ErrorKind::Usage, "{} are layers of channels, and there are none: give {}", aov, Parameter("channel"));
   if (!scene.added.empty()) fail(ErrorKind::Usage, "{} is of one volume: leave out {}", aov, Parameter("add"));
-  if ((channels.empty() || !channels.front().emits) && !scene.lighting.unlit && scene.lighting.scattering != 1)
+  if (!channelsAddUp(scene))
     fail(ErrorKind::Usage, "light that is scattered more than once is no sum over channels: {} needs {} or {}", aov,
          Parameter("scattering", "1"), Parameter("unlit"));
 }

@@ -362,6 +362,9 @@ struct SceneDescription {
   /// a turn has another distance than its first frame alone.
   SceneDescription resolvedTurn(const Scene& scene, int frameCount) const;
 
+  /// The channels that are drawn: those that are given, or those that a scan shows. Reads the scan's header.
+  std::vector<ChannelStyle> shownChannels() const;
+
   bool operator==(const SceneDescription&) const = default;
 };
 
@@ -371,6 +374,8 @@ Camera sliceCameraOf(const SceneDescription& scene, const Volume& volume);
 /// Fails for a slice, which is one image and has no turn.
 void refuseTurnOfSlice(const SceneDescription& scene);
 
+/// Whether an image of the scene is a sum over its channels: light that is scattered from one to another is none.
+bool channelsAddUp(const SceneDescription& scene);
 /// Fails for layers (Aovs::lights, Aovs::channels) of light or channels that the scene has not, or of light that is no sum over channels.
 void checkLayers(const SceneDescription& scene, const Aovs& aovs);
 

@@ -53,7 +53,7 @@ std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int 
   const std::vector<ChunkPart> chunks = chunksOf(file, channel, level, box);
   std::size_t count = 0;
   for (const ChunkPart& part : chunks) count += part.bricks.size();
-  std::vector<ScalarBricks> result(std::size_t(fvx::valuesPerVoxel(channel)), ScalarBricks(box.extent()));
+  std::vector<ScalarBricks> result(file.description().valuesPerVoxel(channel), ScalarBricks(box.extent()));
   for (ScalarBricks& values : result) {
     values.reserve(count);
     for (const ChunkPart& stored : chunks)
@@ -101,9 +101,10 @@ Volume BakedSource::read(int level, const VoxelRange& box) const {
   volume.dimensions = box.extent();
   volume.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(box.first));
   const int stored = finest_ + level;
-  volume.scalars = std::move(readChannel(*file_, Channel::Scalars, stored, box).front());
-  if (volume.temperature) volume.temperature->values = std::move(readChannel(*file_, Channel::Temperature, stored, box).front());
-  if (volume.albedo) std::ranges::move(readChannel(*file_, Channel::Albedo, stored, box), volume.albedo->values.begin());
+  fvx::forEachChannel(volume, [&](Channel channel, const auto& components) {
+    std::vector<ScalarBricks> read = readChannel(*file_, channel, stored, box);
+    for (std::size_t i = 0; i < read.size(); ++i) *components[i] = std::move(read[i]);
+  });
   return volume;
 }
 

@@ -88,12 +88,8 @@ std::vector<float> chunkOf(std::span<const ScalarBricks* const> components, glm:
 
 ChunkValues chunkOf(const Volume& volume, glm::ivec3 cell) {
   ChunkValues chunk{.cell = cell};
-  const auto fill = [&](Channel channel, std::initializer_list<const ScalarBricks*> components) {
-    chunk.channels[std::size_t(channel)] = chunkOf(std::span(components.begin(), components.size()), cell);
-  };
-  fill(Channel::Scalars, {&volume.scalars});
-  if (volume.temperature) fill(Channel::Temperature, {&volume.temperature->values});
-  if (volume.albedo) fill(Channel::Albedo, {&volume.albedo->values[0], &volume.albedo->values[1], &volume.albedo->values[2]});
+  fvx::forEachChannel(volume,
+                      [&](Channel channel, const auto& components) { chunk.channels[std::size_t(channel)] = chunkOf(components, cell); });
   return chunk;
 }
 
@@ -131,7 +127,7 @@ struct BrickPlaces {
 std::vector<ScalarBricks> readChannel(const FvxFile& file, Channel channel, int level, const Progress& progress) {
   const std::span<const ChunkEntry> chunks = file.chunks(channel, level);
   const BrickPlaces places(chunks);
-  const std::size_t count = places.cells.size(), components = std::size_t(fvx::valuesPerVoxel(channel));
+  const std::size_t count = places.cells.size(), components = file.description().valuesPerVoxel(channel);
   const fvx::ChunkReader reader(file, channel, level);
   std::vector<ScalarBricks::Bricks> bricks(components);
   for (ScalarBricks::Bricks& values : bricks) values.resize(count);
@@ -167,10 +163,10 @@ void makeCoarse(Volume& volume, const FvxFile& file, int level) {
 
 Volume readLevel(const FvxFile& file, int level, const Progress& progress) {
   Volume volume = bakedOutline(file, level);
-  const auto read = [&](Channel channel) { return readChannel(file, channel, level, progress); };
-  volume.scalars = std::move(read(Channel::Scalars).front());
-  if (volume.temperature) volume.temperature->values = std::move(read(Channel::Temperature).front());
-  if (volume.albedo) std::ranges::move(read(Channel::Albedo), volume.albedo->values.begin());
+  fvx::forEachChannel(volume, [&](Channel channel, const auto& components) {
+    std::vector<ScalarBricks> read = readChannel(file, channel, level, progress);
+    for (std::size_t i = 0; i < read.size(); ++i) *components[i] = std::move(read[i]);
+  });
   return volume;
 }
 
@@ -205,9 +201,7 @@ std::vector<glm::ivec3> occupiedChunks(const Volume& volume) {
           for (cell.x = low.x; cell.x <= high.x; ++cell.x) chunks[cell] = 1;
     }
   };
-  add(volume.scalars);
-  if (volume.temperature) add(volume.temperature->values);
-  if (volume.albedo) std::ranges::for_each(volume.albedo->values, add);
+  forEachGrid(add, volume);
   std::vector<glm::ivec3> cells;
   chunks.forEach([&](glm::ivec3 cell, std::uint8_t) { cells.push_back(cell); });
   return cells;

@@ -52,7 +52,7 @@ EncodedChunk encodeChunk(const WriteSettings& settings, const ChunkValues& chunk
   ChunkEntry& entry = result.entry;
   if (entry.brickMask == 0) return result;
   const Encoding& encoding = *settings.encodings[std::size_t(channel)];
-  const std::size_t components = std::size_t(valuesPerVoxel(channel));
+  const std::size_t components = std::max(values.size() / kChunkVoxels, std::size_t(1));
   const std::size_t brickBytes = kBrickVoxels * encoding.bytesPerValue();
   const std::vector<float> nothing(kBrickVoxels, kInactiveVoxel);
   entry.bytes = std::uint64_t(entry.bricks()) * components * brickBytes;

@@ -30,7 +30,7 @@ ChunkReader::ChunkReader(const FvxFile& file, Channel channel, int level)
       channel_(channel),
       dimensions_(file.dimensions(level)),
       encoding_(*file.description().encodings[std::size_t(channel)]),
-      components_(std::size_t(valuesPerVoxel(channel))),
+      components_(file.description().valuesPerVoxel(channel)),
       brickBytes_(kBrickVoxels * encoding_.bytesPerValue()),
       decoder_(encoding_) {}
 

@@ -208,7 +208,8 @@ void readCounts(const Json& json, Volume& volume) {
 
 TemperatureGrid readTemperature(const Json& json, std::uint64_t voxels) {
   TemperatureGrid grid{.name = text(json.at("name")), .values = {}};
-  grid.isRadiance = json.value("radiance", false);
+  if (json.value("radiance", false)) throw std::runtime_error("its light has no colours of its own");  // version 1.3
+  grid.isRadiance = json.value("light", false);
   grid.activeVoxels = count(json.at("active_voxels"), voxels, "active_voxels of temperatures");
   grid.nanVoxels = count(json.at("nan_voxels"), voxels, "nan_voxels of temperatures");
   grid.minimum = real(json.at("minimum"), "minimum of temperatures");
@@ -235,8 +236,6 @@ Volume readVolume(const Json& json) {
   volume.classificationIsFixed = classification.at("fixed").get<bool>();
   if (json.contains("temperature")) volume.temperature = readTemperature(json["temperature"], volume.voxelCount());
   if (volume.classification->emission && !volume.temperature) throw std::runtime_error("there is emission without temperatures");
-  if (volume.temperature && volume.temperature->isRadiance && !json.contains("albedo"))
-    throw std::runtime_error("there is light without a colour");
   if (json.contains("albedo")) {
     const Json& albedo = json["albedo"];
     constexpr auto kMost = std::numeric_limits<std::uint64_t>::max();  // it counts voxels beyond the volume's box too
@@ -268,7 +267,7 @@ std::string toJson(const Description& description) {
   json["classification"] = classificationJson(volume);
   if (volume.temperature)
     json["temperature"] = {{"name", volume.temperature->name},
-                           {"radiance", volume.temperature->isRadiance},
+                           {"light", volume.temperature->isRadiance},
                            {"active_voxels", volume.temperature->activeVoxels},
                            {"nan_voxels", volume.temperature->nanVoxels},
                            {"minimum", volume.temperature->minimum},
@@ -296,7 +295,10 @@ Description parseDescription(std::string_view json, const std::filesystem::path&
 
 glm::vec2 Description::valueRange(Channel channel, int level) const {
   if (channel == Channel::Albedo) return {0.0f, 1.0f};
-  if (channel == Channel::Temperature) return {volume.temperature->minimum, volume.temperature->maximum};
+  if (channel == Channel::Temperature) {
+    const TemperatureGrid& grid = *volume.temperature;
+    return grid.isRadiance ? glm::vec2(0.0f, std::max(grid.maximum, 1.0f)) : glm::vec2(grid.minimum, grid.maximum);
+  }
   // In means of densities, voxels without data and negative ones are 0.
   if (level > 0) return {std::min(volume.minimum, 0.0f), std::max(volume.maximum, 0.0f)};
   return {volume.minimum, volume.maximum};

@@ -18,7 +18,7 @@ inline constexpr std::array<std::uint8_t, 12> kIdentifier{0xab, 'F', 'V', 'X', '
 inline constexpr std::uint32_t kByteOrderMark = 0x04030201, kOtherByteOrderMark = 0x01020304;
 
 /// A reader accepts files of its own major version and any minor version.
-inline constexpr std::uint16_t kMajorVersion = 1, kMinorVersion = 3;
+inline constexpr std::uint16_t kMajorVersion = 1, kMinorVersion = 4;
 
 inline constexpr std::uint64_t kPageBytes = 4096;      ///< sections begin at multiples of this
 inline constexpr std::uint64_t kChunkAlignment = 64;   ///< chunks begin at multiples of this

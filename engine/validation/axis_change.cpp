@@ -25,10 +25,7 @@ Volume AxisChange::apply(const Volume& volume) const {
     if (mirrored[i]) origin += double(volume.dimensions[old] - 1) * volume.indexToWorld[old];
   }
   changed.indexToWorld[3] = origin;
-  changed.scalars = apply(volume.scalars);
-  if (changed.temperature) changed.temperature->values = apply(volume.temperature->values);
-  if (changed.albedo)
-    for (ScalarBricks& values : changed.albedo->values) values = apply(values);
+  forEachGrid([this](ScalarBricks& values) { values = apply(values); }, changed);
   return changed;
 }
 

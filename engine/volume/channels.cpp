@@ -77,6 +77,28 @@ Part partOf(const ChannelStyle& style, std::size_t place, const ScalarBricks& va
   return part;
 }
 
+/// Adds up the amounts of channels, whose box `sums` has, and makes the means of their colours.
+void sumUp(const std::vector<Part>& parts, ScalarBricks& sums, std::array<ScalarBricks, 3>& colors) {
+  for (const Part& part : parts)
+    for (std::size_t brick = 0; brick < part.values->bricks().size(); ++brick) sums.makeBrick(part.values->cell(brick));
+  colors.fill(sums);
+  tbb::parallel_for(std::size_t(0), sums.bricks().size(), [&](std::size_t brick) {
+    std::vector<const ScalarBricks::Brick*> of;
+    for (const Part& part : parts) of.push_back(part.values->brickAt(sums.cell(brick)));
+    for (std::size_t voxel = 0; voxel < sums.bricks()[brick].size(); ++voxel) {
+      float sum = 0.0f;
+      glm::vec3 color(0.0f);
+      for (std::size_t i = 0; i < parts.size(); ++i) {
+        const Part::Amount part = of[i] == nullptr ? Part::Amount() : parts[i].at((*of[i])[voxel]);
+        sum += part.amount;
+        color += part.amount * part.color;
+      }
+      sums.bricks()[brick][voxel] = sum > 0.0f ? sum : kInactiveVoxel;
+      for (int c = 0; c < 3; ++c) colors[std::size_t(c)].bricks()[brick][voxel] = sum > 0.0f ? color[c] / sum : kInactiveVoxel;
+    }
+  });
+}
+
 }  // namespace
 
 glm::vec3 automaticChannelColor(std::size_t place) {
@@ -99,49 +121,33 @@ std::size_t channelNumber(const ChannelStyle& channel, std::size_t count) {
   return number;
 }
 
-bool doEmit(const std::vector<ChannelStyle>& channels) {
+void checkCount(const std::vector<ChannelStyle>& channels) {
   if (channels.size() > kMaxChannels)
     fail(ErrorKind::Usage, "a volume has at most {} channels, and {} are given: leave some out", kMaxChannels, channels.size());
-  const auto emitting = std::size_t(std::ranges::count_if(channels, &ChannelStyle::emits));
-  if (emitting != 0 && emitting != channels.size())
-    fail(ErrorKind::Usage, "{} has channels with and without emission: draw those with emission by {}, from the same file",
-         Parameter("channel"), Parameter("add"));
-  return emitting != 0;
 }
 
 void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std::vector<ScalarBricks> values) {
   FV_CHECK_EQ(channels.size(), values.size());
-  const bool emits = doEmit(channels);
-  std::vector<Part> parts;
-  for (std::size_t i = 0; i < channels.size(); ++i) parts.push_back(partOf(channels[i], i, values[i], volume.indexToWorld));
-  ScalarBricks sums(volume.dimensions, values.front().corner());
-  for (const ScalarBricks& channel : values)
-    for (std::size_t brick = 0; brick < channel.bricks().size(); ++brick) sums.makeBrick(channel.cell(brick));
-  AlbedoGrid colors{.name = kChannelsName, .values = {}, .isMade = true};
-  colors.values.fill(sums);
-  tbb::parallel_for(std::size_t(0), sums.bricks().size(), [&](std::size_t brick) {
-    std::vector<const ScalarBricks::Brick*> of;
-    for (const Part& part : parts) of.push_back(part.values->brickAt(sums.cell(brick)));
-    for (std::size_t voxel = 0; voxel < sums.bricks()[brick].size(); ++voxel) {
-      float sum = 0.0f;
-      glm::vec3 color(0.0f);
-      for (std::size_t i = 0; i < parts.size(); ++i) {
-        const Part::Amount part = of[i] == nullptr ? Part::Amount() : parts[i].at((*of[i])[voxel]);
-        sum += part.amount;
-        color += part.amount * part.color;
-      }
-      sums.bricks()[brick][voxel] = sum > 0.0f ? sum : kInactiveVoxel;
-      for (int c = 0; c < 3; ++c) colors.values[std::size_t(c)].bricks()[brick][voxel] = sum > 0.0f ? color[c] / sum : kInactiveVoxel;
-    }
-  });
-  volume.albedo = std::move(colors);
+  checkCount(channels);
+  std::vector<Part> scattering, emitting;
+  for (std::size_t i = 0; i < channels.size(); ++i)
+    (channels[i].emits ? emitting : scattering).push_back(partOf(channels[i], i, values[i], volume.indexToWorld));
+  const glm::ivec3 corner = values.front().corner();
   volume.isFog = true;
-  volume.scalars = emits ? ScalarBricks(volume.dimensions, sums.corner()) : sums;
+  volume.madeOf = MadeOf::Channels;
+  volume.scalars = ScalarBricks(volume.dimensions, corner);
+  if (!scattering.empty()) {
+    volume.albedo = AlbedoGrid{.name = kChannelsName, .values = {}};
+    sumUp(scattering, volume.scalars, volume.albedo->values);
+  }
+  if (!emitting.empty()) {
+    TemperatureGrid& light = volume.temperature.emplace(TemperatureGrid{.name = kChannelsName, .isRadiance = true});
+    light.values = ScalarBricks(volume.dimensions, corner);
+    sumUp(emitting, light.values, light.colors);
+    summariseValues(light);
+    coverBricks(volume, light.values);
+  }
   summariseValues(volume);
-  if (!emits) return;
-  volume.temperature = TemperatureGrid{.name = kChannelsName, .isRadiance = true, .values = std::move(sums)};
-  summariseValues(*volume.temperature);
-  coverBricks(volume, volume.temperature->values);
 }
 
 }  // namespace freevoxels

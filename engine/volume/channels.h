@@ -35,9 +35,9 @@ struct ChannelStyle {
 glm::vec3 automaticChannelColor(std::size_t place);
 
 /// Fills a volume, whose box and place are known, from its channels: with densities Σ w s and the albedo Σ w s c / Σ w s of intensities s,
-/// weights w and colours c (of a transfer function those at the voxels' values); or with light of the same sums
-/// (TemperatureGrid::isRadiance) where they emit. `values` has the scalars of each channel for the volume's box. Either all of the channels
-/// emit, or none. Fails with ErrorKind::Input for transfer functions that cannot be read.
+/// weights w and colours c (of a transfer function those at the voxels' values); and with light of the same sums
+/// (TemperatureGrid::isRadiance) of the channels that emit. `values` has the scalars of each channel for the volume's box. Fails with
+/// ErrorKind::Input for transfer functions that cannot be read.
 void mixChannels(Volume& volume, const std::vector<ChannelStyle>& channels, std::vector<ScalarBricks> values);
 
 /// The factor of a channel's colours, by its place in the list.
@@ -46,7 +46,7 @@ glm::vec3 channelColor(const ChannelStyle& channel, std::size_t place);
 /// The number that the name of a channel is, where channels have numbers alone. Fails with ErrorKind::Input if it is none of `count`.
 std::size_t channelNumber(const ChannelStyle& channel, std::size_t count);
 
-/// Whether the channels emit. Fails with ErrorKind::Usage for some that do and others that do not, and for more than kMaxChannels.
-bool doEmit(const std::vector<ChannelStyle>& channels);
+/// Fails with ErrorKind::Usage for more than kMaxChannels.
+void checkCount(const std::vector<ChannelStyle>& channels);
 
 }  // namespace freevoxels

@@ -114,7 +114,9 @@ glm::dvec3 emittedLight(const Emission& emission, float temperature) {
 glm::dvec3 emittedLight(const Emission& emission, const Volume& volume, glm::ivec3 voxel, float value) {
   if (!volume.temperature->isRadiance) return emittedLight(emission, value);
   if (value == kInactiveVoxel) return glm::dvec3(0.0);
-  return glm::min(emission.strength * double(value) * glm::dvec3(albedoOf({}, *volume.albedo, voxel)), glm::dvec3(kMaxExtinction));
+  const auto& [red, green, blue] = volume.temperature->colors;
+  const glm::dvec3 color(red.at(voxel), green.at(voxel), blue.at(voxel));
+  return glm::clamp(emission.strength * double(value) * color, 0.0, kMaxExtinction);
 }
 
 double brightestLight(const Emission& emission, const TemperatureGrid& grid, float value) {

@@ -70,7 +70,7 @@ ClassifiedVoxel classify(const Classification& classification, float scalar);
 /// The emitted light per world unit of a black body, linear Rec.709, at most kMaxExtinction; 0 for kInactiveVoxel and
 /// below kColdestLight.
 glm::dvec3 emittedLight(const Emission& emission, float temperature);
-/// The same of a voxel of a volume with temperatures, or with TemperatureGrid::isRadiance: strength x value x albedo.
+/// The same of a voxel of a volume with temperatures, or with TemperatureGrid::isRadiance: strength x value x colour.
 glm::dvec3 emittedLight(const Emission& emission, const Volume& volume, glm::ivec3 voxel, float value);
 /// The largest component of the light that a voxel of this value of the grid emits at most.
 double brightestLight(const Emission& emission, const TemperatureGrid& grid, float value);

@@ -121,19 +121,18 @@ Volume coarseVolume(const Volume& volume, int factor, WithoutData withoutData) {
   Volume coarse{.source = volume.source, .dimensions = (volume.dimensions + factor - 1) / factor};
   const glm::dmat4 toMiddle = glm::translate(glm::dmat4(1.0), glm::dvec3(0.5 * (factor - 1)));
   coarse.indexToWorld = volume.indexToWorld * glm::scale(toMiddle, glm::dvec3(factor));
-  coarse.scalars = coarseBricks(volume.scalars, coarse.dimensions, factor, withoutData);
-  if (volume.temperature) {
+  if (volume.temperature)
     coarse.temperature = TemperatureGrid{.name = volume.temperature->name, .isRadiance = volume.temperature->isRadiance};
-    coarse.temperature->values =
-        coarseBricks(volume.temperature->values, coarse.dimensions, factor, WithoutData::Ignored);
+  if (volume.albedo) coarse.albedo = AlbedoGrid{.name = volume.albedo->name};
+  coarse.madeOf = volume.madeOf;
+  forEachGrid(
+      [&](const ScalarBricks& fine, ScalarBricks& means) {
+        means = coarseBricks(fine, coarse.dimensions, factor, &fine == &volume.scalars ? withoutData : WithoutData::Ignored);
+      },
+      volume, coarse);
+  if (coarse.temperature) {
     summariseValues(*coarse.temperature);
     coverBricks(coarse, coarse.temperature->values);
-  }
-  if (volume.albedo) {
-    coarse.albedo = AlbedoGrid{.name = volume.albedo->name, .isMade = volume.albedo->isMade};
-    for (std::size_t c = 0; c < coarse.albedo->values.size(); ++c)
-      coarse.albedo->values[c] =
-          coarseBricks(volume.albedo->values[c], coarse.dimensions, factor, WithoutData::Ignored);
   }
   summariseValues(coarse);
   return coarse;
@@ -144,14 +143,8 @@ Volume clippedVolume(const Volume& volume, const VoxelBox& box) {
   for (int axis = 0; axis < 3; ++axis) FV_CHECK_LE(low[axis], high[axis]);
   Volume part = volume;
   part.content = nullptr;
-  part.scalars = volume.scalars.cropped(low, high);
-  if (volume.temperature) {
-    part.temperature->values = volume.temperature->values.cropped(low, high);
-    summariseValues(*part.temperature);
-  }
-  if (volume.albedo)
-    for (std::size_t c = 0; c < volume.albedo->values.size(); ++c)
-      part.albedo->values[c] = volume.albedo->values[c].cropped(low, high);
+  forEachGrid([&](const ScalarBricks& all, ScalarBricks& kept) { kept = all.cropped(low, high); }, volume, part);
+  if (part.temperature) summariseValues(*part.temperature);
   part.dimensions = high - low + 1;
   part.indexOrigin += low;
   part.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
@@ -165,14 +158,8 @@ Volume clippedVolume(const Volume& volume, const ClipPlane& plane) {
   const VoxelDistance distance(volume.indexToWorld, plane);
   Volume part = volume;
   part.content = nullptr;
-  const auto clip = [&](ScalarBricks& bricks) { bricks = clippedBricks(bricks, distance); };
-  clip(part.scalars);
-  if (part.temperature) {
-    clip(part.temperature->values);
-    summariseValues(*part.temperature);
-  }
-  if (part.albedo)
-    for (ScalarBricks& values : part.albedo->values) clip(values);
+  forEachGrid([&](ScalarBricks& bricks) { bricks = clippedBricks(bricks, distance); }, part);
+  if (part.temperature) summariseValues(*part.temperature);
   summariseValues(part);
   part.minimum = volume.minimum;
   part.maximum = volume.maximum;

@@ -52,10 +52,7 @@ void addBricks(Hash& hash, const ScalarBricks& bricks) {
 std::string contentHash(const Volume& volume, const Classification& classification, const Environment* environment) {
   Hash hash;
   hash.add(volume.indexToWorld);
-  addBricks(hash, volume.scalars);
-  if (volume.temperature) addBricks(hash, volume.temperature->values);
-  if (volume.albedo)
-    for (const ScalarBricks& component : volume.albedo->values) addBricks(hash, component);
+  forEachGrid([&](const ScalarBricks& grid) { addBricks(hash, grid); }, volume);
   if (const auto& function = classification.transferFunction) {
     for (const TransferFunction::OpacityPoint& point : function->opacity) hash.add(point);
     for (const TransferFunction::ColorPoint& point : function->color) hash.add(point);

@@ -138,7 +138,7 @@ void showLabels(Volume& volume, const Labels& labels) {
   const ScalarBricks values = std::exchange(volume.scalars, {});
   ScalarBricks densities(volume.dimensions, values.corner());
   for (std::size_t brick = 0; brick < values.bricks().size(); ++brick) makeBricksAround(densities, values, brick, labels);
-  AlbedoGrid colors{.name = "labels", .values = {}, .isMade = true};
+  AlbedoGrid colors{.name = "labels", .values = {}};
   colors.values.fill(densities);
   tbb::parallel_for(std::size_t(0), densities.bricks().size(), [&](std::size_t brick) {
     const glm::ivec3 first = densities.firstVoxel(brick);
@@ -152,6 +152,7 @@ void showLabels(Volume& volume, const Labels& labels) {
   });
   volume.scalars = std::move(densities);
   volume.albedo = std::move(colors);
+  volume.madeOf = MadeOf::Labels;
   volume.isSolid = true;
   summariseValues(volume);
 }

@@ -37,8 +37,8 @@ std::array<Corner, 8> cornersAround(const glm::dvec3& place, const glm::ivec3& d
   return corners;
 }
 
-glm::vec3 voxelColor(const AlbedoGrid& grid, glm::ivec3 voxel) {
-  return {grid.values[0].at(voxel), grid.values[1].at(voxel), grid.values[2].at(voxel)};
+glm::vec3 voxelColor(const std::array<ScalarBricks, 3>& colors, glm::ivec3 voxel) {
+  return {colors[0].at(voxel), colors[1].at(voxel), colors[2].at(voxel)};
 }
 
 /// What a position of a slice shows, by what the volume is made of; premultiplied.
@@ -59,12 +59,15 @@ Sampler samplerOfValues(const Volume& volume, const Classification& classificati
 }
 
 Sampler samplerOfChannels(const Volume& volume) {
-  const ScalarBricks& amounts = volume.temperature && volume.temperature->isRadiance ? volume.temperature->values : volume.scalars;
-  return [&volume, &amounts](const glm::dvec3& place) {
+  return [&volume](const glm::dvec3& place) {
     glm::vec3 sum(0.0f);
-    for (const Corner& corner : cornersAround(place, volume.dimensions))
-      if (const float amount = amounts.at(corner.voxel); amount > 0.0f)
-        sum += corner.weight * amount * voxelColor(*volume.albedo, corner.voxel);
+    for (const Corner& corner : cornersAround(place, volume.dimensions)) {
+      const auto add = [&](const ScalarBricks& amounts, const std::array<ScalarBricks, 3>& colors) {
+        if (const float amount = amounts.at(corner.voxel); amount > 0.0f) sum += corner.weight * amount * voxelColor(colors, corner.voxel);
+      };
+      if (volume.albedo) add(volume.scalars, volume.albedo->values);
+      if (volume.temperature) add(volume.temperature->values, volume.temperature->colors);
+    }
     return glm::vec4(glm::min(sum, 1.0f), 1.0f);
   };
 }
@@ -74,13 +77,13 @@ Sampler samplerOfChannels(const Volume& volume) {
 bool isLabelled(const Volume& volume, glm::ivec3 voxel) {
   const float density = volume.scalars.at(voxel);
   if (density == kInactiveVoxel) return false;
-  const glm::vec3 color = voxelColor(*volume.albedo, voxel);
+  const glm::vec3 color = voxelColor(volume.albedo->values, voxel);
   float most = density;
   for (glm::ivec3 d(-1); d.z <= 1; ++d.z)
     for (d.y = -1; d.y <= 1; ++d.y)
       for (d.x = -1; d.x <= 1; ++d.x) {
         const glm::ivec3 other = glm::clamp(voxel + d, glm::ivec3(0), volume.dimensions - 1);
-        if (voxelColor(*volume.albedo, other) == color) most = std::max(most, volume.scalars.at(other));
+        if (voxelColor(volume.albedo->values, other) == color) most = std::max(most, volume.scalars.at(other));
       }
   return density > 0.5f * most;
 }
@@ -88,13 +91,12 @@ bool isLabelled(const Volume& volume, glm::ivec3 voxel) {
 Sampler samplerOfLabels(const Volume& volume) {
   return [&volume](const glm::dvec3& place) {
     const glm::ivec3 voxel = glm::clamp(glm::ivec3(glm::floor(place + 0.5)), glm::ivec3(0), volume.dimensions - 1);
-    return isLabelled(volume, voxel) ? glm::vec4(voxelColor(*volume.albedo, voxel), 1.0f) : glm::vec4(0.0f);
+    return isLabelled(volume, voxel) ? glm::vec4(voxelColor(volume.albedo->values, voxel), 1.0f) : glm::vec4(0.0f);
   };
 }
 
 Sampler samplerOf(const Volume& volume, const Classification& classification) {
-  if (volume.albedo && volume.albedo->isMade)
-    return volume.albedo->name == kChannelsName ? samplerOfChannels(volume) : samplerOfLabels(volume);
+  if (volume.madeOf != MadeOf::Grids) return volume.madeOf == MadeOf::Channels ? samplerOfChannels(volume) : samplerOfLabels(volume);
   FV_CHECK_EQ(classification.transferFunction.has_value(), true);
   return samplerOfValues(volume, classification);
 }

@@ -61,10 +61,7 @@ void cropToActive(Volume& volume) {
   expandByActive(volume.scalars, low, high);
   if (volume.temperature) expandByActive(volume.temperature->values, low, high);
   if (high.x < 0) return;
-  volume.scalars = volume.scalars.cropped(low, high);
-  if (volume.temperature) volume.temperature->values = volume.temperature->values.cropped(low, high);
-  if (volume.albedo)
-    for (ScalarBricks& values : volume.albedo->values) values = values.cropped(low, high);
+  forEachGrid([&](ScalarBricks& values) { values = values.cropped(low, high); }, volume);
   volume.dimensions = high - low + 1;
   volume.indexOrigin += low;
   volume.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(low), 1.0);
@@ -154,9 +151,8 @@ Volume outlineOf(const Volume& volume) {
                                           .minimum = grid.minimum,
                                           .maximum = grid.maximum};
   }
-  if (volume.albedo)
-    outline.albedo =
-        AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels, .isMade = volume.albedo->isMade};
+  if (volume.albedo) outline.albedo = AlbedoGrid{.name = volume.albedo->name, .clippedVoxels = volume.albedo->clippedVoxels};
+  outline.madeOf = volume.madeOf;
   return outline;
 }
 

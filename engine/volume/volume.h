@@ -19,11 +19,12 @@ struct Subject;
 struct ValueSummary;
 struct Outliers;
 
-/// Temperatures in addition to a volume's scalars.
+/// Temperatures, or light, in addition to a volume's scalars.
 struct TemperatureGrid {
   std::string name;
-  bool isRadiance = false;  ///< whether values are light that is sent out in the colours of the albedo grid, and no temperatures
-  ScalarBricks values;  ///< like Volume::scalars, for the same box, in any unit
+  bool isRadiance = false;             ///< whether values are light that is sent out in `colors`, and no temperatures
+  ScalarBricks values;                 ///< like Volume::scalars, for the same box, in any unit
+  std::array<ScalarBricks, 3> colors;  ///< of light: red, green and blue, linear Rec.709 in 0..1; else without voxels
   std::uint64_t activeVoxels = 0, nanVoxels = 0;
   float minimum = 0.0f, maximum = 0.0f;  ///< of the active voxels
   std::uint64_t outlierVoxels = 0;       ///< as of a Volume
@@ -36,8 +37,10 @@ struct AlbedoGrid {
   std::string name;
   std::array<ScalarBricks, 3> values;  ///< red, green and blue, each like Volume::scalars, for the same box
   std::uint64_t clippedVoxels = 0;     ///< voxels that were clamped to 0..1; NaN becomes 0
-  bool isMade = false;                 ///< whether they were made of labels (labels.h) or channels (channels.h), and are no grid of a file
 };
+
+/// What scalars, albedos and light were made of, where they are no grids of a file: labels (labels.h) or channels (channels.h).
+enum class MadeOf { Grids, Labels, Channels };
 
 struct Volume {
   std::string source;  ///< file and grid, for messages and metadata: "cloud.vdb density[1]"
@@ -69,6 +72,7 @@ struct Volume {
 
   std::optional<TemperatureGrid> temperature;
   std::optional<AlbedoGrid> albedo;
+  MadeOf madeOf = MadeOf::Grids;
 
   /// What the user should know of how the file was read: sentences, in which parameters may be marked (core/parameter.h).
   std::vector<std::string> warnings;
@@ -98,6 +102,18 @@ struct Volume {
   /// Edge in world units of the cube with the volume of a voxel: the paper's Δ.
   double voxelSize() const;
 };
+
+/// Calls `apply` with each grid of a volume: scalars, temperatures or light, its colours, and albedos; and with the same grids of other
+/// volumes that have them.
+template <typename Apply, typename First, typename... Others>
+void forEachGrid(const Apply& apply, First& first, Others&... others) {
+  apply(first.scalars, others.scalars...);
+  if (first.temperature) apply(first.temperature->values, others.temperature->values...);
+  for (std::size_t c = 0; c < 3; ++c) {
+    if (first.temperature && first.temperature->isRadiance) apply(first.temperature->colors[c], others.temperature->colors[c]...);
+    if (first.albedo) apply(first.albedo->values[c], others.albedo->values[c]...);
+  }
+}
 
 /// The scalars of all voxels, x fastest: for references and tests that look at every voxel.
 std::vector<float> denseScalars(const Volume& volume);

@@ -66,10 +66,7 @@ Volume VolumeInMemory::read(int level, const VoxelRange& box) const {
   Volume volume = outline_;
   volume.dimensions = box.extent();
   volume.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(box.first));
-  volume.scalars = part(volume_->scalars, box);
-  if (volume.temperature) volume.temperature->values = part(volume_->temperature->values, box);
-  if (volume.albedo)
-    std::ranges::transform(volume_->albedo->values, volume.albedo->values.begin(), [&](const auto& values) { return part(values, box); });
+  forEachGrid([&](ScalarBricks& read, const ScalarBricks& all) { read = part(all, box); }, volume, *volume_);
   return volume;
 }
 

@@ -9,6 +9,8 @@
 
 #include "engine/description/label_words.h"
 #include "engine/description/scene_description.h"
+#include "engine/storage/baked_volume.h"
+#include "engine/volume/coarse_volume.h"
 #include "engine/volume/volume_of_scalars.h"
 #include "engine/volume/voxel_classifier.h"
 #include "tests/volume/vdb_fixture.h"
@@ -96,6 +98,25 @@ TEST(Channels, LightAddsUpAndNothingIsDimmed) {
   EXPECT_GT(EmissionDescription().resolve(volume, {})->strength, 0.0) << "chosen for an image";
 }
 
+TEST(Channels, ThoseWithAndWithoutEmissionMixInOneVolume) {
+  const Volume volume = volumeOfChannels(ramps({11, 5, 9}), glm::dmat4(1.0), {channel("0:red:0,10:emission"), channel("1:blue:0,40")});
+  const Classification classification{.densityScale = 3.0, .emission = EmissionDescription{.strength = 5.0}.resolve(volume, {})};
+  const auto expectMixed = [&](const Volume& mixed) {
+    const ClassifiedVoxel seen = VoxelClassifier(classification, mixed).at({4, 3, 8});
+    EXPECT_NEAR(seen.extinction, 3.0 * 0.75, 1e-4);
+    EXPECT_EQ(glm::vec3(seen.color), glm::vec3(0.0f, 0.0f, 1.0f)) << "the light has a colour of its own";
+    EXPECT_NEAR(seen.emission.r, 5.0 * 0.4, 1e-5);
+    EXPECT_EQ(seen.emission.b, 0.0);
+  };
+  expectMixed(volume);
+  const std::string file = testing::TempDir() + "mixed_channels.fvx";
+  bakeVolume(file, volume, classification, {.keepScalars = true});
+  expectMixed(readBaked(std::make_shared<const fvx::FvxFile>(file)));
+  const Volume coarse = coarseVolume(volume, 2, WithoutData::Zero);
+  EXPECT_EQ(coarse.madeOf, MadeOf::Channels);
+  EXPECT_GT(VoxelClassifier(classification, coarse).at({2, 1, 4}).emission.r, 0.0);
+}
+
 TEST(Channels, AWindowThatIsNotGivenLeavesOutTheBrightestThousandth) {
   const auto values = [] {
     return std::vector<ScalarBricks>{ScalarBricks::make(
@@ -109,8 +130,7 @@ TEST(Channels, AWindowThatIsNotGivenLeavesOutTheBrightestThousandth) {
 }
 
 TEST(Channels, WhatCannotBeDrawnTogetherIsRefused) {
-  expectRefusal([] { doEmit({channel("0:emission"), channel("1")}); }, ErrorKind::Usage, {"channel", "add"});
-  expectRefusal([] { doEmit(std::vector<ChannelStyle>(17)); }, ErrorKind::Usage, {"16", "17"});
+  expectRefusal([] { checkCount(std::vector<ChannelStyle>(17)); }, ErrorKind::Usage, {"16", "17"});
   expectRefusal([] { channelNumber(channel("3"), 3); }, ErrorKind::Input, {"3"});
   expectRefusal(
       [] {
