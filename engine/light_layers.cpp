@@ -23,17 +23,17 @@ std::vector<Layer> layersOf(const Lighting& all, bool mayEmit) {
   dark.ambient = glm::dvec3(0.0);
   dark.environment = nullptr;
   std::vector<Layer> layers;
-  if (mayEmit) layers.push_back({"emission", dark});
+  if (mayEmit) layers.push_back({kEmissionLayer, dark});
   for (std::size_t i = 0; i < all.lights.size(); ++i) {
-    layers.push_back({fmt::format("light{}", i + 1), dark});
+    layers.push_back({lightLayerName(i), dark});
     layers.back().lighting.lights = {all.lights[i]};
   }
   if (all.ambient != glm::dvec3(0.0)) {
-    layers.push_back({"ambient", dark});
+    layers.push_back({kAmbientLayer, dark});
     layers.back().lighting.ambient = all.ambient;
   }
   if (all.environment) {
-    layers.push_back({"environment", dark});
+    layers.push_back({kEnvironmentLayer, dark});
     layers.back().lighting.environment = all.environment;
   }
   return layers;
@@ -45,6 +45,10 @@ Progress partOf(const Progress& progress, std::size_t part, std::size_t parts) {
 }
 
 }  // namespace
+
+std::string lightLayerName(std::size_t light) {
+  return fmt::format("light{}", light + 1);
+}
 
 void addLayer(Image& image, const std::string& name, const Image& layer) {
   for (int c = 0; c < 3; ++c) {
@@ -69,7 +73,7 @@ Image renderLightLayers(Renderer& renderer, const Camera& camera, const FrameSet
       for (std::size_t pixel = 0; pixel < emission.size(); ++pixel)
         for (int c = 0; c < 3; ++c) layer.pixels[pixel][c] -= emission[pixel][c];
     addLayer(image, layers[i].name, layer);
-    if (layers[i].name == "emission") emission = layer.pixels;
+    if (layers[i].name == kEmissionLayer) emission = layer.pixels;
     if (i == 0) {
       std::swap(layer.channels, image.channels);
       image = std::move(layer);

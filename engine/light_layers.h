@@ -11,6 +11,12 @@
 
 namespace freevoxels {
 
+inline constexpr const char* kAmbientLayer = "ambient";
+inline constexpr const char* kEnvironmentLayer = "environment";
+inline constexpr const char* kEmissionLayer = "emission";
+/// The name of the layer of a light, by its number from 0 on.
+std::string lightLayerName(std::size_t light);
+
 /// Adds the colours of an image of the same size as the channels NAME.R, NAME.G and NAME.B of `image`.
 void addLayer(Image& image, const std::string& name, const Image& layer);
 

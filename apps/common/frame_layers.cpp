@@ -11,29 +11,22 @@
 
 namespace freevoxels {
 
-namespace {
-
 bool mayEmit(const Scene& scene) {
   const auto emits = [](const SceneVolume& volume) { return volume.classification.emission.has_value(); };
   return scene.classification.emission || std::ranges::any_of(scene.added, emits);
 }
 
-/// "dapi", or "channel0" where the name is no word that a layer may have.
-std::string layerName(const ChannelStyle& channel) {
+std::string channelLayerName(const ChannelStyle& channel) {
   std::string name = channel.name;
   for (char& character : name)
     if (std::isalnum(static_cast<unsigned char>(character)) == 0) character = '_';
   return std::isdigit(static_cast<unsigned char>(name.front())) != 0 ? "channel" + name : name;
 }
 
-/// Adds a layer for each channel, with all others black, and returns their sum.
-std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, const SceneDescription& description, const Scene& scene,
-                                        const FrameSettings& settings, const Progress& progress) {
+std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, const std::vector<ChannelStyle>& channels,
+                                        const SceneDescription& description, const Scene& scene, const FrameSettings& settings,
+                                        const Progress& progress) {
   std::vector<glm::vec3> sum(image.pixels.size(), glm::vec3(0.0f));
-  const bool isScan = description.input.kind() == VolumeKind::Scan;
-  ScanRequest request = description.input.scanRequest(kMaxNumberedVoxels);
-  request.channels = description.classification.channels;
-  const std::vector<ChannelStyle> channels = isScan ? scanChannels(description.input.volume, request) : request.channels;
   for (std::size_t i = 0; i < channels.size(); ++i) {
     SceneDescription alone = description;
     alone.classification.channels = channels;
@@ -42,13 +35,11 @@ std::vector<glm::vec3> addChannelLayers(Image& image, const Device& device, cons
     const Volume volume = alone.readVolume(kMaxNumberedVoxels);
     Renderer renderer(device, volume, scene.classification, description.method.table());
     const Image layer = renderer.render(scene.camera, settings, progress);
-    addLayer(image, layerName(channels[i]), layer);
+    addLayer(image, channelLayerName(channels[i]), layer);
     for (std::size_t pixel = 0; pixel < sum.size(); ++pixel) sum[pixel] += glm::vec3(layer.pixels[pixel]);
   }
   return sum;
 }
-
-}  // namespace
 
 Image renderFrame(Renderer& renderer, const Device& device, const SceneDescription& description, const Scene& scene,
                   const FrameSettings& settings, const Aovs& aovs, const Progress& progress) {
@@ -59,7 +50,7 @@ Image renderFrame(Renderer& renderer, const Device& device, const SceneDescripti
   Image image = aovs.lights ? renderLightLayers(renderer, scene.camera, settings, mayEmit(scene), progress)
                             : renderer.render(scene.camera, settings, progress);
   if (!aovs.channels) return image;
-  const std::vector<glm::vec3> sum = addChannelLayers(image, device, description, scene, settings, progress);
+  const std::vector<glm::vec3> sum = addChannelLayers(image, device, description.shownChannels(), description, scene, settings, progress);
   if (aovs.lights) return image;
   for (std::size_t pixel = 0; pixel < sum.size(); ++pixel) image.pixels[pixel] = glm::vec4(sum[pixel], image.pixels[pixel].a);
   return image;

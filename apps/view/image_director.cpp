@@ -3,8 +3,10 @@
 #include <spdlog/spdlog.h>
 
 #include <algorithm>
+#include <utility>
 
 #include "apps/view/window.h"
+#include "engine/image/display_pass.h"
 #include "engine/octree/volume_limits.h"
 
 namespace freevoxels {
@@ -31,7 +33,11 @@ const char* nameOf(Purpose purpose) {
 }  // namespace
 
 ImageDirector::ImageDirector(const Device& device, bool wholeOnly)
-    : volumes_(kMaxNumberedVoxels), quick_(device, volumes_, Window::wake), whole_(device, volumes_, Window::wake), wholeOnly_(wholeOnly) {}
+    : device_(device),
+      volumes_(kMaxNumberedVoxels),
+      quick_(device, volumes_, Window::wake),
+      whole_(device, volumes_, Window::wake),
+      wholeOnly_(wholeOnly) {}
 
 ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int voxels, double scale) const {
   ImageRequest request{.scene = state.scene,
@@ -51,6 +57,10 @@ ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int
 
 /// False for what is not better than what is shown.
 bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThread::Result& result, std::exception_ptr& failure) {
+  if (&thread == &whole_ && std::exchange(drawsLayers_, false)) {
+    if (result.drawn && result.drawn->layers) layered_ = result.drawn;
+    return false;
+  }
   answered_ = std::max(answered_, result.number);
   if (&thread == &quick_) refines_ = false;
   if (!result.drawn) {
@@ -78,7 +88,7 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
 }
 
 bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
-  bool isNew = false;
+  bool isNew = std::exchange(isMixed_, false);
   for (RenderThread* const thread : {&quick_, &whole_}) {
     const std::optional<RenderThread::Result> result = thread->take();
     if (!result || !keep(state, *thread, *result, failure)) continue;
@@ -99,6 +109,7 @@ bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
         state.scene.camera.look(*state.camera);
       }
       ++revision_;  // what was automatic is given now
+      asked_ = state.scene;
     } else if (image.request.purpose == Purpose::Whole) {
       state.camera = image.scene.camera;  // an automatic camera is another one after a resize
     }
@@ -114,8 +125,8 @@ void ImageDirector::askOfChange(const ViewState& state) {
     return whole_.ask(request(state, Purpose::Whole, kAllVoxels, 1.0));
   }
   // A whole image in full size is given up for what is wanted now.
-  if (state.changed || drawsWhole_) whole_.abandon();
-  drawsWhole_ = false;
+  if (state.changed || drawsWhole_ || drawsLayers_) whole_.abandon();
+  drawsWhole_ = drawsLayers_ = false;
   const bool moves = !state.changed && wholeRevision_ == revision_ && state.diagnosis.shown == Shown::Image;
   if (moves && state.latest && state.latest->request.purpose != Purpose::Move) movePace_.beginFrom(wholeTime_);
   const AdaptiveResolution& pace = moves ? movePace_ : editPace_;
@@ -140,6 +151,39 @@ void ImageDirector::refine(const ViewState& state) {
   }
 }
 
+/// Colours that are edited once are likely to be edited again, so that layers are worth their time.
+void ImageDirector::noteEdit(const SceneDescription& scene) {
+  edited_.reset();
+  for (const Colors colors : {Colors::Lights, Colors::Channels})
+    if (scene != asked_ && equalButColors(scene, asked_, colors)) edited_ = colors;
+}
+
+/// Shows the scene as a mixture of its layers at once, if there are some that fit.
+bool ImageDirector::mix(ViewState& state) {
+  if (!mayMix(state) || state.diagnosis.shown != Shown::Image || state.comparedMethod()) return false;
+  const Clock::time_point start = Clock::now();
+  auto drawn = std::make_shared<DrawnImage>(*layered_);
+  drawn->request = request(state, Purpose::Edit, kAllVoxels, 1.0);
+  drawn->image = std::make_shared<const FrameTargets>(
+      FrameTargets{.colorEnergy = uploadImage(device_, layered_->layers->mixed(state.scene, *layered_->scene.volume))});
+  drawn->shown = {drawn->image, &drawn->image->colorEnergy};
+  drawn->milliseconds = std::chrono::duration<double, std::milli>(Clock::now() - start).count();
+  spdlog::debug("image mixed of layers: {:.1f} ms", drawn->milliseconds);
+  quick_.abandon();
+  whole_.abandon();
+  drawsWhole_ = drawsLayers_ = false;
+  state.latest = std::move(drawn);
+  answered_ = lastRequest_;
+  lastPurpose_ = Purpose::Edit;
+  askedVoxels_ = kAllVoxels;
+  return isMixed_ = true;
+}
+
+bool ImageDirector::wantsLayers(const ViewState& state) const {
+  if (!edited_ || drawsLayers_ || layersAskedOf_ == lastRequest_ || !isComplete(state)) return false;
+  return !mayMix(state) || layered_->layers->colors() != *edited_;
+}
+
 void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
   if (pixels.x < 1 || pixels.y < 1) return;
   if (state.scene.camera.size != pixels) {
@@ -149,14 +193,21 @@ void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
   }
   const Clock::time_point now = Clock::now();
   if (isPending(state)) {
-    if (state.changed) ++revision_;
+    if (state.changed) ++revision_, noteEdit(state.scene);
     lastChange_ = now;
     ++lastRequest_;
     refines_ = false;
-    askOfChange(state);
+    if (!state.changed || !mix(state)) askOfChange(state);
+    asked_ = state.scene;
     state.changed = state.moved = false;
   } else if (now - lastChange_ >= kStill && answered_ == lastRequest_ && askedOfWhole_ != lastRequest_ && !refines_ && !moves) {
     refine(state);
+  } else if (!moves && wantsLayers(state)) {
+    layersAskedOf_ = lastRequest_;
+    drawsLayers_ = true;
+    ImageRequest layers = request(state, Purpose::Whole, kAllVoxels, 1.0);
+    layers.layers = edited_;
+    whole_.ask(std::move(layers));
   }
 }
 

@@ -30,6 +30,8 @@ class ImageDirector {
   bool hasFailed(const ViewState& state) const { return failed_ == lastRequest_ && !isPending(state); }
   /// Whether nothing has to be asked for before something changes.
   bool isSettled() const { return answered_ == lastRequest_ && askedOfWhole_ == lastRequest_ && !refines_; }
+  /// Whether there are layers of the image, of which it is mixed at once when colours change.
+  bool mayMix(const ViewState& state) const { return layered_ && layered_->layers->fit(state.scene); }
   std::optional<std::pair<std::string, double>> activity() const;
 
   /// Abandons everything, for good, without waiting for that.
@@ -40,9 +42,13 @@ class ImageDirector {
   static bool isPending(const ViewState& state) { return state.changed || state.moved; }
   void askOfChange(const ViewState& state);
   void refine(const ViewState& state);
+  void noteEdit(const SceneDescription& scene);
+  bool mix(ViewState& state);
+  bool wantsLayers(const ViewState& state) const;
   bool keep(ViewState& state, RenderThread& thread, const RenderThread::Result& result, std::exception_ptr& failure);
   ImageRequest request(const ViewState& state, Purpose purpose, int voxels, double scale) const;
 
+  const Device& device_;
   VolumeCache volumes_;
   RenderThread quick_, whole_;  ///< for images of few voxels, and of all voxels
   const bool wholeOnly_;
@@ -56,6 +62,11 @@ class ImageDirector {
   bool refines_ = false;          ///< whether a step of refinement is being drawn
   bool wholeIsQuick_ = false, drawsWhole_ = false;  ///< drawsWhole_: a whole image in full size was asked for, and has not come
   double wholeTime_ = 0.0;                          ///< of the last whole image, ms
+  SceneDescription asked_;                          ///< of the last request
+  std::optional<Colors> edited_;                    ///< what was edited last, if it is nothing but colours
+  bool drawsLayers_ = false, isMixed_ = false;      ///< isMixed_: ViewState::latest was mixed of layers, and nobody knows yet
+  std::uint64_t layersAskedOf_ = 0;                 ///< the request of whose image layers were asked for
+  std::shared_ptr<const DrawnImage> layered_;       ///< the last layers, or null
 };
 
 }  // namespace freevoxels

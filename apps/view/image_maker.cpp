@@ -30,7 +30,9 @@ std::string nameOf(const SceneDescription& scene, bool clipped) {
   const auto nameOf = [](const std::optional<GridRequest>& request) {
     return request ? fmt::format("{} {}", request->isRequired, request->name) : std::string(kNone);
   };
-  return fmt::format("{}temperature={} albedo={}", textOf(read, {"input"}), nameOf(scene.emission.grid()),
+  read.classification.channels = scene.classification.channels;
+  read.classification.labels = scene.classification.labels;
+  return fmt::format("{}temperature={} albedo={}", textOf(read, {"input", "classification"}), nameOf(scene.emission.grid()),
                      nameOf(scene.classification.grid()));
 }
 
@@ -163,6 +165,7 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
                    .film = film,
                    .wholeDimensions = volumes_.wholeDimensions(),
                    .device = device_.description()};
+  if (drawn.scene.volume->madeOf == MadeOf::Channels) drawn.channels = request.scene.shownChannels();
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const VolumeSource> source = coarse(drawn.scene, request.voxelsAlongEdge);
   if (!kept_.isFor(source, request.scene, drawn.scene)) diagnoser_.reset();
@@ -175,6 +178,11 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
     settings.gather().mostSamplesAcrossPixel = 1.0;
     settings.gather().sampleTolerance = 0.0f;
     settings.lod *= float(request.scale);
+  }
+  if (request.layers) {
+    if (auto layers = ColorLayers::make(renderer, device_, request.scene, drawn.scene, settings, *request.layers, progress))
+      drawn.layers = std::make_shared<const ColorLayers>(std::move(*layers));
+    return drawn;
   }
   drawn.image = renderer.renderOnDevice(drawn.scene.camera, settings, progress);
   drawn.shown = {drawn.image, &drawn.image->colorEnergy};

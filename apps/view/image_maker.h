@@ -7,6 +7,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/common/color_layers.h"
 #include "apps/common/film_view.h"
 #include "apps/common/kept_renderer.h"
 #include "apps/view/diagnosis.h"
@@ -58,6 +59,8 @@ struct ImageRequest {
   Purpose purpose = Purpose::Whole;
   /// Largest number of voxels along the volume's longest edge. Of larger volumes, means of blocks are drawn.
   int voxelsAlongEdge = kAllVoxels;
+  /// If given, not an image is wanted but its layers.
+  std::optional<Colors> layers = {};
   /// Edges of the image over those of the whole image. Blocks of the octree are drawn as in that, so that none are made for a quick image
   /// alone.
   double scale = 1.0;
@@ -72,10 +75,12 @@ struct DrawnImage {
   std::shared_ptr<const FrameTargets> image;     ///< on the device, which must outlive the image
   std::shared_ptr<const RenderTarget> shown;     ///< the same image, or the diagnosis in its place
   std::shared_ptr<const RenderTarget> compared;  ///< of the other method, or null
+  std::shared_ptr<const ColorLayers> layers;     ///< where the request wants them and there are some, and then no image
   std::vector<StageTime> times;
   double milliseconds = 0.0;  ///< in total, without reading files
   VolumeMemory memory;
   CutCounts cut;
+  std::vector<ChannelStyle> channels;          ///< that are drawn, if any (SceneDescription::shownChannels)
   std::optional<std::uint64_t> visibleVoxels;  ///< Renderer::occupiedVoxelCount
 };
 

@@ -44,6 +44,8 @@ void ViewState::begin(const Scene& first) {
   const bool isFixed = first.volume && first.volume->classificationIsFixed;
   if (const auto& function = first.classification.transferFunction; function && !scene.classification.transferFunction && !isFixed)
     scene.classification.takeFunction(*function);
+  if (first.volume && first.volume->madeOf == MadeOf::Channels && first.classification.emission)
+    scene.emission.take(*first.classification.emission);  // which would follow the channels' colours
   LightingDescription& lighting = scene.lighting;
   if (lighting.hasLight() || !first.lighting) return;
   for (const Light& light : first.lighting->lights) lighting.lights.push_back({.light = light, .hasIntensity = true});

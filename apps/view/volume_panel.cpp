@@ -105,6 +105,8 @@ void VolumePanel::draw(ViewState& state, GridList& grids) {
     }
   }
   drawGrids(state, grids);
+  const std::vector<GridChoice>* const all = grids.of(state.scene.input.volume);
+  channels_.draw(state, all ? std::size_t(std::ranges::count(*all, true, &GridChoice::isScalar)) : 0);
   drawClipping(state);
   frames_.draw(state);
   added_.draw(state);

@@ -7,6 +7,7 @@
 
 #include "apps/view/added_panel.h"
 #include "apps/view/async_value.h"
+#include "apps/view/channel_panel.h"
 #include "apps/view/view_state.h"
 #include "engine/volume/vdb.h"
 
@@ -69,6 +70,7 @@ class VolumePanel {
 
   SequencePanel frames_;
   AddedPanel added_;
+  ChannelPanel channels_;
   std::optional<int> resolution_;  ///< while it is dragged
 };
 

@@ -28,6 +28,8 @@ std::uint32_t shownColor(glm::dvec3 linear, float alpha);
 
 /// A colour that is shown as sRGB and stored as linear. Colours brighter than 1 keep their brightness.
 bool editColor(const char* label, glm::dvec3& linear);
+/// The same as a square alone, without a line of its own.
+bool editSwatch(const char* name, glm::dvec3& linear);
 bool slide(const char* label, double& value, double low, double high, const char* format = "%.3g");
 /// `low` must be above 0.
 bool slideLogarithmic(const char* label, double& value, double low, double high, const char* format = "%.4g");

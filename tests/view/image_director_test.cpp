@@ -5,6 +5,8 @@
 #include <vector>
 
 #include "apps/view/navigation.h"
+#include "engine/image/metrics.h"
+#include "engine/splatting/frame_targets.h"
 #include "engine/volume/openvdb_trees.h"
 #include "tests/device/device_fixture.h"
 #include "tests/temporary_folder.h"
@@ -53,6 +55,39 @@ TEST_F(ImageDirectorTest, RefinesInStepsAndMovesWithAllVoxels) {
   EXPECT_EQ(moved.back().purpose, Purpose::Whole);
   EXPECT_EQ(state.whole->scene.camera.position, state.camera->position);
   EXPECT_EQ(moved.back().revision, moved.front().revision) << "nothing else is resolved again";
+}
+
+/// The image that is shown at once after an edit of colours, beside the whole image that follows it.
+TEST_F(ImageDirectorTest, ColoursAreMixedOfLayersOnceTheyWereEdited) {
+  const auto expectMixed = [&] {
+    state.changed = true;
+    director.ask(state, {64, 48}, false);
+    std::exception_ptr failure;
+    ASSERT_TRUE(director.take(state, failure)) << "it is there at once";
+    const Image mixed = downloadImage(device(), *state.latest->image);
+    follow();
+    EXPECT_GT(compareImages(mixed, downloadImage(device(), *state.whole->image)).psnr, 55.0);
+  };
+  const auto makeLayers = [&] {
+    state.changed = true;
+    follow();
+    std::exception_ptr failure;
+    for (int i = 0; i < 20'000 && !director.mayMix(state); ++i) {
+      director.ask(state, {64, 48}, false);
+      director.take(state, failure);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    ASSERT_TRUE(director.mayMix(state));
+  };
+  state.scene.lighting = {.lights = {{.light = {.place = {1, 1, 1}}}, {.light = {.place = {-1, 0, 1}}}}, .ambient = glm::dvec3(0.2)};
+  follow();
+  state.scene.lighting.lights[0].light.color = {1.0, 0.5, 0.5};
+  makeLayers();
+  state.scene.lighting.lights[0].light.color = {0.0, 0.2, 2.0};
+  state.scene.lighting.lights[1].hasIntensity = true;
+  state.scene.lighting.lights[1].light.intensity = 0.3;
+  state.scene.lighting.ambient = glm::dvec3(0.4, 0.0, 0.0);
+  expectMixed();
 }
 
 TEST_F(ImageDirectorTest, AnAutomaticCameraFollowsTheWindow) {
