@@ -35,14 +35,14 @@ TEST_F(LayersTest, WhatHasNoLayersIsRefused) {
   expectCleanRefusal(render + "--aov lights --share 1/2 --sums", ExitCode::Usage, "--aov lights");
   expectCleanRefusal("render procedural:cloud @a.exr --size 16 --resolution 8 --aov channels", ExitCode::Usage, "--channel");
   expectCleanRefusal("render procedural:cloud @a.exr --size 16 --channel 0", ExitCode::Usage, "--channel");
-  expectCleanRefusal("render @dyes.vdb @a.exr --channel 0 --channel 1:emission", ExitCode::Usage, "--add");
   expectCleanRefusal("render @dyes.vdb @a.exr --channel 0 --transfer-function {}", ExitCode::Usage, "--transfer-function");
   expectCleanRefusal("render @dyes.vdb @a.exr --channel other", ExitCode::Input, "dyes.vdb");
 }
 
 TEST_F(LayersTest, LabelsAndChannelsAreBakedAsTheyAreDrawn) {
   writeDyes(folder / "dyes.vdb");
-  for (const std::string look : {"--grid dapi --labels all", "--channel dapi:blue --channel gfp", "--channel 0:blue:emission"}) {
+  for (const std::string look : {"--grid dapi --labels all", "--channel dapi:blue --channel gfp", "--channel 0:blue:emission",
+                                 "--channel dapi:blue --channel gfp:red:emission"}) {
     SCOPED_TRACE(look);
     expectSuccess(run("bake @dyes.vdb @a.fvx --quiet " + look));
     for (const std::string& file : {"dyes.vdb " + look, std::string("a.fvx")})
