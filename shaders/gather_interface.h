@@ -268,6 +268,15 @@ struct LightPlanes {
   int atInfinity;
   int fanIndex;
 };
+// Planes in one layer of bricks.
+struct LightPlanesPush {
+  uvec2 rays;                  // device address of the rays' depths
+  int firstBrick, brickCount;  // of the bricks that are there
+  int firstPlane;
+  int firstCode;  // of the first plane, in words
+};
+FV_CONSTANT int kLightPlanesThreads = 64;
+FV_CONSTANT int kLightBrickEdge = 8;  // ScalarBricks::kEdge
 
 // brick_quads.comp
 struct BrickQuadsPush {

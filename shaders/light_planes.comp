@@ -1,20 +1,24 @@
 #version 460
 // Optical depth from the centres of all voxels of some planes to a light, from the light's rays on these planes: what light_depths.comp
-// computes, for planes of a volume that is not on the device as a whole. A thread writes two voxels of a row.
+// computes, for planes of a volume that is not on the device as a whole, in the bricks whose light is kept. A thread writes two voxels of a row.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_buffer_reference : require
 #extension GL_EXT_buffer_reference_uvec2 : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_interface.h"
+layout(scalar, push_constant) uniform Push { LightPlanesPush push; };
+#define RAY_DEPTHS_BINDING 4
 #include "ray_lookup.glsl"
 
 // Whether rays hold depths of positions (scalars), or those in front of layers.
 layout(constant_id = 0) const bool kScalars = false;
 
-layout(local_size_x = kExpandTile, local_size_y = kExpandTile) in;
+layout(local_size_x = kLightPlanesThreads) in;
 layout(scalar, binding = 0) uniform Planes { LightPlanes planes; };
 layout(binding = 1) uniform samplerBuffer extinction;  // of the slab's voxels
-layout(scalar, binding = 2) writeonly buffer Codes { uint codes[]; };  // kOtherFan where the voxel is not on this face
+// By plane, brick and row. kOtherFan where the voxel is not on this face.
+layout(scalar, binding = 2) writeonly buffer Codes { uint codes[]; };
+layout(scalar, binding = 3) readonly buffer Bricks { ivec2 bricks[]; };  // places on the sides, in bricks
 
 const float kAtSource = 1e-3;  // in voxels: at a smaller distance from a light the direction is undefined
 
@@ -45,10 +49,12 @@ uint codeOf(ivec2 side, int plane) {
 }
 
 void main() {
-  const ivec3 place = ivec3(gl_GlobalInvocationID);
-  const ivec2 pairs = ivec2((planes.sides.x + 1) / 2, planes.sides.y);
-  if (any(greaterThanEqual(place.xy, pairs))) return;
-  const int plane = planes.slab.begin + place.z;
-  const ivec2 side = ivec2(2 * place.x, place.y);
-  codes[place.x + pairs.x * (place.y + pairs.y * place.z)] = codeOf(side, plane) | codeOf(side + ivec2(1, 0), plane) << 16;
+  const int place = int(gl_LocalInvocationID.x + kLightPlanesThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
+  const int perBrick = kLightBrickEdge * kLightBrickEdge / 2, brick = place / perBrick, pair = place % perBrick;
+  if (brick >= push.brickCount) return;
+  const int plane = push.firstPlane + int(gl_WorkGroupID.z);
+  // Beyond the volume's box nobody reads what is written.
+  const ivec2 side = min(kLightBrickEdge * bricks[push.firstBrick + brick] + ivec2(2 * pair % kLightBrickEdge, 2 * pair / kLightBrickEdge), planes.sides - 1);
+  const uint second = codeOf(min(side + ivec2(1, 0), planes.sides - 1), plane);
+  codes[push.firstCode + place + perBrick * push.brickCount * int(gl_WorkGroupID.z)] = codeOf(side, plane) | second << 16;
 }

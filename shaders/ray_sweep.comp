@@ -19,12 +19,16 @@ layout(constant_id = 1) const bool kBetween = false;
 // Whether it is known which cells of kSkipGroup^3 voxels are far from all occupied ones, so that rays need not look at their voxels.
 layout(constant_id = 2) const bool kSkips = false;
 
+// Whether only some groups of kRaySweepThreads rays are marched, as the others meet nothing in this slab, and nobody reads their depths there.
+layout(constant_id = 3) const bool kListed = false;
+
 layout(local_size_x = kRaySweepThreads) in;
 layout(scalar, push_constant) uniform Push { RaySweepPush push; };
 layout(binding = 0) uniform samplerBuffer extinction;  // extinction of the slab's voxels, with 0 around the volume; or scalars
 layout(scalar, binding = 1) buffer Carried { float carried[]; };  // depth between slabs, by ray
 layout(binding = 3) uniform utextureBuffer nearOccupied;  // a byte by cell: 1 if it or one of its 26 neighbours is occupied, otherwise 0
 layout(scalar, binding = 4) readonly buffer CellCounts { ivec3 cellCounts; };  // along the axes
+layout(scalar, binding = 5) readonly buffer Groups { uint groupCount, groups[]; };  // numbers of those that are marched
 layout(buffer_reference, scalar, buffer_reference_align = 4) writeonly buffer Depths { uint pairs[]; };
 
 // The first of the four voxels around a position on a plane, which is counted from the first of the face; `weights` are those of the
@@ -178,7 +182,9 @@ float sourceCut(vec2 atFirst, vec2 perPlane) {
 }
 
 void main() {
-  const uint ray = gl_LocalInvocationID.x + kRaySweepThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x);
+  const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
+  if (kListed && group >= groupCount) return;
+  const uint ray = gl_LocalInvocationID.x + kRaySweepThreads * (kListed ? groups[group] : group);
   const FaceRays fan = push.fan;
   const uint rays = uint(fan.rayCount.x * fan.rayCount.y);
   if (ray >= rays) return;

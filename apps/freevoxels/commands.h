@@ -127,6 +127,7 @@ class PresetsCommand {
  private:
   void run() const;
 
+  std::string name_;
   bool json_ = false;
 };
 

@@ -1,10 +1,13 @@
 #include "apps/view/look_panel.h"
 
-#include <algorithm>
-#include <cmath>
 #include <imgui.h>
 #include <imgui_stdlib.h>
 #include <spdlog/spdlog.h>
+
+#include <algorithm>
+#include <cmath>
+#include <filesystem>
+#include <utility>
 
 #include "apps/view/theme.h"
 #include "apps/view/ui_painter.h"
@@ -252,9 +255,15 @@ bool ClassificationPanel::drawFile(ViewState& state) {
   ImGui::SameLine();
   if (ImGui::Button("Save") && !file_.empty())
     attempt(state, [&] {
+      std::error_code unknown;
+      if (std::filesystem::exists(file_, unknown) && std::exchange(overwritten_, file_) != file_) {
+        state.notice = file_ + " is there: press Save again to replace it";
+        return;
+      }
       TransferModel shown = model_;
       if (const auto& window = state.scene.classification.window) shown.range = glm::dvec2(window->low, window->high);
       writeTextAtomically(file_, shown.json() + "\n");
+      overwritten_ = file_;
       state.notice = "saved " + file_;
     });
   hint("Writes the curves into this file", "--transfer-function");

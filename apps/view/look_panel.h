@@ -77,6 +77,7 @@ class ClassificationPanel {
   TransferModel model_;
   std::string modelText_;  ///< text of the option that model_ was read from, or written to
   std::string file_, preset_;
+  std::string overwritten_;  ///< the file of that name that Save may replace: written by it, or asked for twice
 };
 
 class EmissionPanel {

@@ -1,10 +1,13 @@
 #include "engine/attenuation/plane_sweep.h"
 
+#include <tbb/parallel_for.h>
+
 #include <algorithm>
 #include <limits>
 #include <map>
 #include <optional>
 #include <system_error>
+#include <tuple>
 #include <utility>
 
 #include "embedded/light_planes.h"
@@ -26,6 +29,11 @@ namespace {
 constexpr int kEdge = ScalarBricks::kEdge;
 constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_TRANSFER_BIT;
 constexpr int kMaxPlanes = 8, kMinPlanes = 2;  ///< that are swept at a time
+constexpr std::size_t kLayersOfSlab = 2;       ///< of bricks, at most
+
+glm::ivec2 sidesOf(const FaceRays& fan, glm::ivec3 dimensions) {
+  return {dimensions[(fan.axis + 1) % 3], dimensions[(fan.axis + 2) % 3]};
+}
 
 std::uint64_t slabVoxels(glm::ivec2 sides, int planes) {
   return std::uint64_t(planes + 1) * std::uint64_t(sides.x + 2) * std::uint64_t(sides.y + 2);
@@ -36,18 +44,45 @@ std::uint64_t depthBytes(const FaceRays& fan, int planes) {
   return fan.rays() * std::uint64_t(planes / 2 + 1) * sizeof(std::uint32_t);
 }
 
-std::uint64_t codeWords(glm::ivec2 sides) {
-  return std::uint64_t((sides.x + 1) / 2) * std::uint64_t(sides.y);
+std::uint64_t groupCount(const FaceRays& fan) {
+  return (fan.rays() + shader::kRaySweepThreads - 1) / shader::kRaySweepThreads;
 }
 
-/// What a face of a sweep takes on the device.
-std::uint64_t sweepBytes(const FaceRays& fan, glm::ivec2 sides, int planes) {
-  return slabVoxels(sides, planes) * sizeof(float) + fan.rays() * sizeof(float) + depthBytes(fan, planes) +
-         codeWords(sides) * std::uint64_t(planes) * sizeof(std::uint32_t);
+constexpr int kBrickFace = kEdge * kEdge;  // voxels of a plane in a brick
+static_assert(shader::kLightBrickEdge == kEdge);
+
+/// Cells of kSkipGroup³ voxels of a box.
+glm::ivec3 cellsOf(glm::ivec3 dimensions) {
+  return (dimensions + shader::kSkipGroup - 1) / shader::kSkipGroup;
 }
 
-glm::ivec2 sidesOf(const FaceRays& fan, glm::ivec3 dimensions) {
-  return {dimensions[(fan.axis + 1) % 3], dimensions[(fan.axis + 2) % 3]};
+/// What a face of a sweep takes on the device, if the light is kept in all bricks.
+std::uint64_t sweepBytes(const FaceRays& fan, glm::ivec3 dimensions, int planes) {
+  const glm::ivec2 sides = sidesOf(fan, dimensions), bricks = (sides + kEdge - 1) / kEdge;
+  const glm::ivec3 cells = cellsOf(dimensions);
+  return slabVoxels(sides, planes) * sizeof(float) + fan.rays() * sizeof(float) + (1 + groupCount(fan)) * sizeof(std::uint32_t) +
+         depthBytes(fan, planes) +
+         std::uint64_t(bricks.x) * std::uint64_t(bricks.y) *
+             (std::uint64_t(kBrickFace * planes) * sizeof(std::uint16_t) + kLayersOfSlab * sizeof(glm::ivec2)) +
+         std::uint64_t(cells.x) * std::uint64_t(cells.y) * std::uint64_t(cells.z);
+}
+
+/// Calls `visit` with the bricks of a grid that are marked and in a box, by their places in it.
+template <typename Visit>
+void forEachBrickIn(const SparseGrid<std::uint8_t>& grid, const VoxelRange& box, const Visit& visit) {
+  const glm::ivec3 first = box.first / kEdge, counts = (box.extent() + kEdge - 1) / kEdge;
+  if (double(counts.x) * double(counts.y) * double(counts.z) >
+      double(grid.nodes().size() * std::tuple_size_v<SparseGrid<std::uint8_t>::Node>)) {
+    grid.forEach([&](glm::ivec3 brick, std::uint8_t) {
+      if (glm::all(glm::greaterThanEqual(brick, first)) && glm::all(glm::lessThan(brick, first + counts))) visit(brick - first);
+    });
+    return;
+  }
+  glm::ivec3 place;
+  for (place.z = 0; place.z < counts.z; ++place.z)
+    for (place.y = 0; place.y < counts.y; ++place.y)
+      for (place.x = 0; place.x < counts.x; ++place.x)
+        if (grid.at(first + place) != 0) visit(place);
 }
 
 /// What a sweep looks up of a voxel: its extinction per world unit, or its scalar in intervals of the transfer function's table.
@@ -108,13 +143,15 @@ RaySource fromBox(const RaySource& source, const VoxelRange& box) {
 /// The sweep of one face of a box.
 class SweptLight::Sweep {
  public:
-  /// `around` marks the bricks whose codes are kept. With `isIsland`, there are further boxes.
+  /// `around` marks the bricks whose codes are kept, and `withData` those that have data. With `isIsland`, there are further boxes.
   Sweep(SweptLight& light, const Device& device, const SourceLevel& level, const VoxelValues& values,
-        const SparseGrid<std::uint8_t>& around, const VoxelRange& box, const FaceRays& fan, int fanNumber, bool isIsland)
+        const SparseGrid<std::uint8_t>& withData, const SparseGrid<std::uint8_t>& around, const VoxelRange& box, const FaceRays& fan,
+        int fanNumber, bool isIsland)
       : light_(light),
         device_(device),
         level_(level),
         values_(values),
+        withData_(withData),
         around_(around),
         box_(box),
         fan_(fan),
@@ -124,19 +161,30 @@ class SweptLight::Sweep {
         sides_(sidesOf(fan, dimensions_)),
         strideB_(sides_.x + 2),
         planeStride_(strideB_ * (sides_.y + 2)) {
-    while (planes_ > kMinPlanes && sweepBytes(fan_, sides_, planes_) > device.availableBytes()) planes_ /= 2;
-    if (const std::uint64_t bytes = sweepBytes(fan_, sides_, planes_); bytes > device.availableBytes())
+    while (planes_ > kMinPlanes && sweepBytes(fan_, dimensions_, planes_) > device.availableBytes()) planes_ /= 2;
+    if (const std::uint64_t bytes = sweepBytes(fan_, dimensions_, planes_); bytes > device.availableBytes())
       fail(ErrorKind::OutOfMemory, "exact shadows of this light need {} MiB, and {} has {} MiB left: use {}", bytes >> 20,
            device.description().name, device.availableBytes() >> 20, Parameter("light-attenuation", "table"));
     slab_ = Buffer(device, slabVoxels() * sizeof(float), MemoryUse::Device, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     slabTexels_ = TexelView(device, slab_, VK_FORMAT_R32_SFLOAT);
-    noTexels_ = TexelView(device, slab_, VK_FORMAT_R32_UINT, sizeof(std::uint32_t));
     carried_ = Buffer(device, fan.rays() * sizeof(float), MemoryUse::Device, "ray depths between slabs");
-    depths_ = Buffer(device, depthBytes(fan, planes_), MemoryUse::Device, "ray depths");
+    groups_ = Buffer(device, (1 + groupCount(fan)) * sizeof(std::uint32_t), MemoryUse::Device, "groups of rays");
+    if (!isIsland) upload(device, carried_, std::as_bytes(std::span<const float>(std::vector<float>(fan.rays(), 0.0f))));
+    depths_ = Buffer(device, depthBytes(fan, planes_), MemoryUse::Device, "ray depths", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    const std::uint64_t mostTexels = device.limits().maxTexelBufferElements;
+    const bool depthsAreTexels = depths_.bytes() / sizeof(std::uint32_t) <= mostTexels;
+    depthTexels_ = TexelView(device, depths_, VK_FORMAT_R32_UINT, depthsAreTexels ? depths_.bytes() : sizeof(std::uint32_t));
     frame_ = Buffer(device, sizeof(shader::LightPlanes), MemoryUse::Device, "planes of a light", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    codes_ = Buffer(device, codeWords() * std::uint64_t(planes_) * sizeof(std::uint32_t), MemoryUse::Device, "codes of light");
-    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars(), isIsland, false});
-    lookUp_ = makeComputePipeline(device, shaders::light_planes, {values.areScalars()});
+    listBricks();
+    std::vector<std::uint8_t> near = nearOccupied();
+    const bool skips = near.size() <= mostTexels;
+    if (!skips) near.resize(1);
+    std::tie(near_, nearTexels_) = uploadTexels(device, std::as_bytes(std::span(near)), VK_FORMAT_R8_UINT, "cells near occupied ones");
+    const glm::ivec3 cells = cellsOf(dimensions_);
+    cellCounts_ = Buffer(device, sizeof cells, MemoryUse::Device, "counts of cells");
+    upload(device, cellCounts_, std::as_bytes(std::span(&cells, 1)));
+    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars(), isIsland, skips, true});
+    lookUp_ = makeComputePipeline(device, shaders::light_planes, {values.areScalars(), depthsAreTexels});
     if (!values.areScalars()) return;
     const std::vector<glm::vec4> texels = values.table().texels(kStoredDepth * level.outline().voxelSize());
     table_ = Buffer(device, texels.size() * sizeof(glm::vec4), MemoryUse::Device, "transfer function table",
@@ -165,8 +213,38 @@ class SweptLight::Sweep {
 
  private:
   std::uint64_t slabVoxels() const { return freevoxels::slabVoxels(sides_, planes_); }
-  std::uint64_t codeWords() const { return freevoxels::codeWords(sides_); }
   int coordinateOf(int plane) const { return fan_.firstPlane + fan_.direction * plane; }
+
+  /// The bricks whose light is kept, by layer; and room for those of the layers that planes of a slab are in.
+  void listBricks() {
+    bricksOfLayers_.resize(std::size_t((dimensions_[fan_.axis] + kEdge - 1) / kEdge));
+    forEachBrickIn(around_, box_, [&](glm::ivec3 place) {
+      bricksOfLayers_[std::size_t(place[fan_.axis])].push_back(glm::ivec2(place[(fan_.axis + 1) % 3], place[(fan_.axis + 2) % 3]));
+    });
+    std::size_t most = 1;
+    for (std::vector<glm::ivec2>& bricks : bricksOfLayers_) {
+      std::ranges::sort(bricks, {}, [](glm::ivec2 place) { return std::tuple(place.y, place.x); });
+      most = std::max(most, bricks.size());
+    }
+    codes_ = Buffer(device_, most * std::size_t(kBrickFace * planes_) * sizeof(std::uint16_t), MemoryUse::Device, "codes of light");
+    bricks_ = Buffer(device_, kLayersOfSlab * most * sizeof(glm::ivec2), MemoryUse::Device, "bricks whose light is kept");
+  }
+
+  /// Whether a cell or one beside it has data, by cell.
+  std::vector<std::uint8_t> nearOccupied() const {
+    constexpr int kCells = kEdge / shader::kSkipGroup;  // along a brick's edge
+    const glm::ivec3 cells = cellsOf(dimensions_);
+    std::vector<std::uint8_t> near(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z), 0);
+    forEachBrickIn(withData_, box_, [&](glm::ivec3 place) {
+      const glm::ivec3 first = place * kCells - 1;
+      const glm::ivec3 low = glm::max(first, 0), high = glm::min(first + kCells + 1, cells - 1);
+      for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
+        for (cell.y = low.y; cell.y <= high.y; ++cell.y)
+          for (cell.x = low.x; cell.x <= high.x; ++cell.x)
+            near[std::size_t(cell.x) + std::size_t(cells.x) * (std::size_t(cell.y) + std::size_t(cells.y) * std::size_t(cell.z))] = 1;
+    });
+    return near;
+  }
 
   /// The bricks of the layer that has a plane; those of the last two layers are kept.
   const Volume& layer(int number) {
@@ -185,7 +263,7 @@ class SweptLight::Sweep {
     if (coordinate < 0 || coordinate >= dimensions_[fan_.axis]) return;
     const ScalarBricks& bricks = layer(coordinate / kEdge).scalars;
     const int axisA = (fan_.axis + 1) % 3, axisB = (fan_.axis + 2) % 3;
-    for (std::size_t i = 0; i < bricks.bricks().size(); ++i) {
+    tbb::parallel_for(std::size_t(0), bricks.bricks().size(), [&](std::size_t i) {
       const ScalarBricks::Brick& brick = bricks.bricks()[i];
       const glm::ivec3 first = bricks.firstVoxel(i), end = glm::min(bricks.dimensions() - first, kEdge);
       glm::ivec3 v;
@@ -194,16 +272,17 @@ class SweptLight::Sweep {
         for (v[axisA] = 0; v[axisA] < end[axisA]; ++v[axisA])
           plane[std::size_t(first[axisA] + v[axisA] + 1 + strideB_ * (first[axisB] + v[axisB] + 1))] =
               values_.at(brick[ScalarBricks::indexInBrick(v)]);
-    }
+    });
   }
 
   void sweepPlanes(int begin, int end, std::vector<StageTime>& times) {
     {
       const StageTimer timer(times, "read planes");
-      std::vector<float> slab(slabVoxels());
+      slabValues_.resize(slabVoxels());
       for (int i = 0; i <= planes_; ++i)
-        fill(coordinateOf(begin - 1 + i), std::span(slab).subspan(std::size_t(i) * std::size_t(planeStride_), std::size_t(planeStride_)));
-      upload(device_, slab_, std::as_bytes(std::span(slab)));
+        fill(coordinateOf(begin - 1 + i),
+             std::span(slabValues_).subspan(std::size_t(i) * std::size_t(planeStride_), std::size_t(planeStride_)));
+      upload(device_, slab_, std::as_bytes(std::span(slabValues_)));
     }
     // The depths of plane 2k and 2k + 1 are in pair k; in the buffer, pair begin / 2 - 1 is the first. Places among all planes may wrap
     // around, as they do in the shaders.
@@ -218,6 +297,8 @@ class SweptLight::Sweep {
                                 .strideB = strideB_};
     // Extinctions of the transfer function's table are in another unit.
     const double unit = values_.areScalars() ? 1.0 / (kStoredDepth * level_.outline().voxelSize()) : 1.0;
+    const std::vector<std::uint32_t> groups = groupsOf(begin, end);
+    upload(device_, groups_, std::as_bytes(std::span(groups)));
     Commands commands(device_);
     commands.beginPass("light sweep");
     if (begin > 0) {
@@ -225,9 +306,11 @@ class SweptLight::Sweep {
       commands.barrier(kTransfer, kComputeStage);
     }
     const TexelView& table = values_.areScalars() ? tableTexels_ : slabTexels_;
-    const std::array<Binding, 5> rays{&slabTexels_, &carried_, &table, &noTexels_, &carried_};
-    commands.dispatchLinear(sweep_, rays, shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = place},
-                            fan_.rays());
+    const std::array<Binding, 6> rays{&slabTexels_, &carried_, &table, &nearTexels_, &cellCounts_, &groups_};
+    if (groups.front() > 0)
+      commands.dispatchLinear(sweep_, rays,
+                              shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = place},
+                              std::uint64_t(groups.front()) * shader::kRaySweepThreads);
     commands.barrier(kComputeStage, kComputeStage);
     commands.beginPass("light depths");
     commands.update(frame_, shader::LightPlanes{.fan = fan,
@@ -237,43 +320,115 @@ class SweptLight::Sweep {
                                                 .place = source_.place,
                                                 .atInfinity = source_.atInfinity ? 1 : 0,
                                                 .fanIndex = fanNumber_});
-    const std::array<Binding, 3> lookUps{&frame_, &slabTexels_, &codes_};
-    commands.dispatch(lookUp_, lookUps, glm::ivec3((sides_.x + 1) / 2, sides_.y, end - begin));
+    const std::array<Binding, 5> lookUps{&frame_, &slabTexels_, &codes_, &bricks_, &depthTexels_};
+    const std::vector<Stretch> stretches = stretchesOf(begin, end);
+    std::size_t codeCount = 0;
+    for (const Stretch& stretch : stretches) {
+      const std::size_t perPlane = stretch.bricks->size() * kBrickFace;
+      if (perPlane > 0)
+        commands.dispatchLinear(lookUp_, lookUps,
+                                shader::LightPlanesPush{.rays = addressWords(depths_.address()),
+                                                        .firstBrick = stretch.firstBrick,
+                                                        .brickCount = int(stretch.bricks->size()),
+                                                        .firstPlane = stretch.begin,
+                                                        .firstCode = int(codeCount / 2)},
+                                perPlane / 2, std::uint32_t(stretch.end - stretch.begin));
+      codeCount += perPlane * std::size_t(stretch.end - stretch.begin);
+    }
     commands.submitAndWait();
     addTimes(times, commands.times());
     const StageTimer timer(times, "keep light");
-    std::vector<std::uint16_t> codes(2 * codeWords() * std::size_t(planes_));
-    download(device_, codes_, std::as_writable_bytes(std::span(codes)));
-    for (int plane = begin; plane < end; ++plane)
-      keep(coordinateOf(plane), std::span(codes).subspan(std::size_t(plane - begin) * 2 * codeWords(), 2 * codeWords()));
+    std::vector<std::uint16_t> codes(codeCount);
+    if (codeCount > 0) download(device_, codes_, std::as_writable_bytes(std::span(codes)));
+    std::span<const std::uint16_t> rest(codes);
+    for (const Stretch& stretch : stretches)
+      for (int plane = stretch.begin; plane < stretch.end; ++plane) {
+        keep(coordinateOf(plane), *stretch.bricks, rest);
+        rest = rest.subspan(stretch.bricks->size() * kBrickFace);
+      }
+  }
+
+  /// How many groups of rays a position in a brick whose light is kept may read on these planes (rayPlace() of ray_lookup.glsl), and their
+  /// numbers. Where no such brick is, nothing is in the way.
+  std::vector<std::uint32_t> groupsOf(int begin, int end) {
+    constexpr int kReach = 4;  // rays: those that are interpolated, and the planes between which positions are
+    isGroupRead_.assign(groupCount(fan_), 0);
+    const auto placeOf = [&](glm::dvec2 side, int plane) {
+      const double up = double(coordinateOf(plane)) - double(fan_.farthest);
+      return (side - glm::dvec2(fan_.origin) - glm::dvec2(fan_.slope) * up) /
+             (double(fan_.spacing) * (1.0 + double(fan_.convergence) * up));
+    };
+    const int firstLayer = std::clamp(coordinateOf(begin - 1), 0, dimensions_[fan_.axis] - 1) / kEdge;
+    const int lastLayer = std::clamp(coordinateOf(end), 0, dimensions_[fan_.axis] - 1) / kEdge;
+    for (int layer = std::min(firstLayer, lastLayer); layer <= std::max(firstLayer, lastLayer); ++layer)
+      for (const glm::ivec2 brick : bricksOfLayers_[std::size_t(layer)]) {
+        glm::dvec2 low(std::numeric_limits<double>::max()), high = -low;
+        for (const int plane : {std::max(begin - 1, 0), end})
+          for (int corner = 0; corner < 4; ++corner) {
+            const glm::dvec2 place = placeOf(glm::dvec2(brick * kEdge + glm::ivec2(corner % 2, corner / 2) * (kEdge - 1)), plane);
+            low = glm::min(low, place);
+            high = glm::max(high, place);
+          }
+        const glm::dvec2 last(fan_.rayCount - 1);
+        const glm::ivec2 first(glm::clamp(low - double(kReach), glm::dvec2(0.0), last)),
+            past(glm::clamp(high + double(kReach), glm::dvec2(0.0), last));
+        for (std::int64_t row = first.y; row <= past.y; ++row)
+          for (std::int64_t group = (row * fan_.rayCount.x + first.x) / shader::kRaySweepThreads;
+               group <= (row * fan_.rayCount.x + past.x) / shader::kRaySweepThreads; ++group)
+            isGroupRead_[std::size_t(group)] = 1;
+      }
+    std::vector<std::uint32_t> groups{0};
+    for (std::size_t group = 0; group < isGroupRead_.size(); ++group)
+      if (isGroupRead_[group] != 0) groups.push_back(std::uint32_t(group));
+    groups.front() = std::uint32_t(groups.size() - 1);
+    return groups;
+  }
+
+  /// Planes in one layer, and the bricks there whose light is kept, of which `firstBrick` is the number of the first one on the device.
+  struct Stretch {
+    int begin, end;
+    const std::vector<glm::ivec2>* bricks;
+    int firstBrick;
+  };
+  /// Uploads the bricks of the stretches.
+  std::vector<Stretch> stretchesOf(int begin, int end) {
+    std::vector<Stretch> stretches;
+    std::vector<glm::ivec2> bricks;
+    for (int plane = begin; plane < end; ++plane) {
+      const std::vector<glm::ivec2>& there = bricksOfLayers_[std::size_t(coordinateOf(plane) / kEdge)];
+      if (stretches.empty() || stretches.back().bricks != &there) {
+        stretches.push_back({.begin = plane, .end = plane, .bricks = &there, .firstBrick = int(bricks.size())});
+        bricks.insert(bricks.end(), there.begin(), there.end());
+      }
+      stretches.back().end = plane + 1;
+    }
+    if (!bricks.empty()) upload(device_, bricks_, std::as_bytes(std::span(bricks)));
+    return stretches;
   }
 
   /// Copies the codes of a plane into the bricks of its layer.
-  void keep(int coordinate, std::span<const std::uint16_t> codes) {
+  void keep(int coordinate, std::span<const glm::ivec2> bricks, std::span<const std::uint16_t> codes) {
     const int number = coordinate / kEdge;
     if (number != keptLayer_) {
       storeLayer();
       keptLayer_ = number;
     }
     const int axisA = (fan_.axis + 1) % 3, axisB = (fan_.axis + 2) % 3;
-    const glm::ivec3 bricks = (dimensions_ + kEdge - 1) / kEdge, firstBrick = box_.first / kEdge;
-    glm::ivec3 brick;
-    brick[fan_.axis] = number;
-    for (brick[axisB] = 0; brick[axisB] < bricks[axisB]; ++brick[axisB])
-      for (brick[axisA] = 0; brick[axisA] < bricks[axisA]; ++brick[axisA]) {
-        if (around_.at(firstBrick + brick) == 0) continue;
-        const auto [place, isNew] = kept_.try_emplace(std::pair(brick[axisB], brick[axisA]), firstBrick + brick, BrickCodes());
-        BrickCodes& ofBrick = place->second.second;
-        if (isNew) ofBrick.fill(std::uint16_t(shader::kOtherFan));
-        const glm::ivec3 end = glm::min(dimensions_ - brick * kEdge, kEdge);
-        glm::ivec3 v;
-        v[fan_.axis] = coordinate % kEdge;
-        for (v[axisB] = 0; v[axisB] < end[axisB]; ++v[axisB])
-          for (v[axisA] = 0; v[axisA] < end[axisA]; ++v[axisA]) {
-            const int a = brick[axisA] * kEdge + v[axisA], b = brick[axisB] * kEdge + v[axisB];
-            ofBrick[ScalarBricks::indexInBrick(v)] = codes[std::size_t(a) + std::size_t(b) * std::size_t((sides_.x + 1) / 2 * 2)];
-          }
-      }
+    for (std::size_t i = 0; i < bricks.size(); ++i) {
+      glm::ivec3 brick;
+      brick[fan_.axis] = number;
+      brick[axisA] = bricks[i].x;
+      brick[axisB] = bricks[i].y;
+      const auto [place, isNew] = kept_.try_emplace(std::pair(bricks[i].y, bricks[i].x), box_.first / kEdge + brick, BrickCodes());
+      BrickCodes& ofBrick = place->second.second;
+      if (isNew) ofBrick.fill(std::uint16_t(shader::kOtherFan));
+      const glm::ivec3 end = glm::min(dimensions_ - brick * kEdge, kEdge);
+      glm::ivec3 v;
+      v[fan_.axis] = coordinate % kEdge;
+      for (v[axisB] = 0; v[axisB] < end[axisB]; ++v[axisB])
+        for (v[axisA] = 0; v[axisA] < end[axisA]; ++v[axisA])
+          ofBrick[ScalarBricks::indexInBrick(v)] = codes[i * kBrickFace + std::size_t(v[axisA] + v[axisB] * kEdge)];
+    }
   }
 
   /// Adds the bricks of a layer to the file. What a voxel has through another face stays.
@@ -297,7 +452,7 @@ class SweptLight::Sweep {
   const Device& device_;
   const SourceLevel& level_;
   const VoxelValues& values_;
-  const SparseGrid<std::uint8_t>& around_;
+  const SparseGrid<std::uint8_t>&withData_, &around_;
   const VoxelRange box_;
   const FaceRays fan_;
   const int fanNumber_;
@@ -310,8 +465,12 @@ class SweptLight::Sweep {
   const glm::dmat3 indexToWorld_{level_.outline().indexToWorld};
   Buffer slab_, carried_, depths_, frame_, codes_, table_;
   TexelView slabTexels_, tableTexels_;
-  TexelView noTexels_;  ///< bound where shaders read none
+  Buffer near_, cellCounts_, bricks_, groups_;
+  std::vector<std::uint8_t> isGroupRead_;  ///< by group of rays
+  TexelView nearTexels_, depthTexels_;
+  std::vector<std::vector<glm::ivec2>> bricksOfLayers_;  ///< whose light is kept: their places on the sides, in bricks
   Pipeline sweep_, lookUp_;
+  std::vector<float> slabValues_;
   std::map<int, Volume> layers_;
   int keptLayer_ = -1;
   std::map<std::pair<int, int>, std::pair<glm::ivec3, BrickCodes>> kept_;  ///< of the layer's bricks, by their places on its sides
@@ -330,13 +489,13 @@ SweptLight::SweptLight(const Device& device, const SourceLevel& level, const Ray
                        const Progress& progress) try
     : source_(source), records_((level.outline().dimensions + kEdge - 1) / kEdge), codes_(std::filesystem::temp_directory_path()) {
   const VoxelValues values(level);
-  const SparseGrid<std::uint8_t> around = bricksAround(level);
+  const SparseGrid<std::uint8_t> withData = level.source->bricks(level.level), around = bricksAround(level);
   std::vector<IslandRays> islands;
   for (const VoxelRange& box : sweptBoxes(level, around))
     islands.push_back({.box = box, .fans = faceRays(box.extent(), fromBox(source, box))});
   const bool areIslands = islands.size() > 1;
   const auto sweepOf = [&](const IslandRays& island, int face) {
-    return Sweep(*this, device, level, values, around, island.box, island.fans[std::size_t(face)], face, areIslands);
+    return Sweep(*this, device, level, values, withData, around, island.box, island.fans[std::size_t(face)], face, areIslands);
   };
   const auto forEachFace = [&](const auto& visit) {
     for (IslandRays& island : islands)
@@ -363,7 +522,7 @@ std::uint64_t SweptLight::leastBytes(const SourceLevel& level, const RaySource& 
   std::uint64_t bytes = 0;
   for (const VoxelRange& box : sweptBoxes(level, bricksAround(level)))
     for (const FaceRays& fan : faceRays(box.extent(), fromBox(source, box)))
-      if (fan.planeCount > 0) bytes = std::max(bytes, sweepBytes(fan, sidesOf(fan, box.extent()), kMinPlanes));
+      if (fan.planeCount > 0) bytes = std::max(bytes, sweepBytes(fan, box.extent(), kMinPlanes));
   return bytes;
 }
 

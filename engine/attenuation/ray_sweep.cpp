@@ -201,9 +201,13 @@ void RaySweep::recordBox(Commands& commands, const shader::FaceRays& fan, const 
                                            .strideA = strides[sideA],
                                            .strideB = strides[sideB]}};
   const OccupiedCells* const cells = box.cells;
-  const std::array<Binding, 5> bindings{&box.extinction, &carried_, &box.table, cells != nullptr ? &cells->near() : &noTexels_,
-                                        cells != nullptr ? &cells->dimensions() : &carried_};
-  commands.dispatchLinear(makeComputePipeline(device_, shaders::ray_sweep, {scalars, false, cells != nullptr}), bindings, push,
+  const std::array<Binding, 6> bindings{&box.extinction,
+                                        &carried_,
+                                        &box.table,
+                                        cells != nullptr ? &cells->near() : &noTexels_,
+                                        cells != nullptr ? &cells->dimensions() : &carried_,
+                                        &carried_};
+  commands.dispatchLinear(makeComputePipeline(device_, shaders::ray_sweep, {scalars, false, cells != nullptr, false}), bindings, push,
                           std::uint64_t(fan.rayCount.x) * std::uint64_t(fan.rayCount.y));
   commands.barrier(kComputeStage, kComputeStage);
 }

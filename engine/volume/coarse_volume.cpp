@@ -56,7 +56,7 @@ void fillCoarse(ScalarBricks::Brick& means, const CoarseBrick& part, const Scala
         for (v.x = low.x; v.x < high.x; ++v.x)
           if (const float scalar = fine.bricks()[brick][ScalarBricks::indexInBrick(v)]; scalar != kInactiveVoxel) {
             const std::size_t to = ScalarBricks::indexInBrick((place + v - begin) / factor);
-            sums[to] += scalar;
+            sums[to] += withoutData == WithoutData::Zero ? std::max(scalar, 0.0f) : scalar;
             held[to] += 1.0;
           }
   }

@@ -7,7 +7,7 @@ namespace freevoxels {
 
 /// How voxels without data count in a mean.
 enum class WithoutData {
-  Zero,     ///< as 0: for densities, where no data means empty space
+  Zero,     ///< as 0, like values below 0: for densities, where no data means empty space
   Ignored,  ///< not at all: for values that are classified
 };
 

@@ -22,7 +22,10 @@ TEST_F(TransferFunctionCommand, ListsItsPresets) {
   expectSuccess(list);
   EXPECT_NE(list.out.find("ct-bone"), std::string::npos);
   EXPECT_NE(list.out.find("Hounsfield"), std::string::npos);
-  EXPECT_TRUE(json::parse(run("presets --json").out).at("viridis").contains("color"));
+  const json all = json::parse(run("presets --json").out);
+  EXPECT_TRUE(all.at("viridis").contains("color"));
+  EXPECT_EQ(json::parse(run("presets viridis").out), all.at("viridis"));
+  expectCleanRefusal("presets virdis", ExitCode::Usage, "virdis");
 }
 
 TEST_F(TransferFunctionCommand, DrawsWithAPresetAsWithItsFile) {
