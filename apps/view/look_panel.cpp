@@ -303,7 +303,9 @@ void EmissionPanel::draw(ViewState& state, GridList& grids) {
 bool EmissionPanel::drawOptions(ViewState& state, const std::vector<GridChoice>& grids) {
   EmissionDescription& options = state.scene.emission;
   bool changed = false;
-  if (grids.size() > 1) {
+  const std::optional<TemperatureGrid>& grid = state.latest->scene.volume->temperature;
+  const bool isRadiance = grid && grid->isRadiance;
+  if (grids.size() > 1 && !isRadiance) {
     changed |= chooseGrid("Temperature", grids, &GridChoice::isScalar, "automatic", options.temperatureGrid);
     hint("Grid of the temperatures", "--temperature-grid");
   }
@@ -314,6 +316,7 @@ bool EmissionPanel::drawOptions(ViewState& state, const std::vector<GridChoice>&
   };
   changed |= strength_.draw("Strength", "Luminance per world unit at 2000 K", "--emission", options.strength,
                             automatic(options.strength, resolved->strength));
+  if (isRadiance) return changed;
   changed |= scale_.draw("Scale", "Kelvin for each unit of the grid's values", "--temperature-scale", options.temperatureScale,
                          automatic(options.temperatureScale, resolved->temperatureScale), "%.4g K");
   if (options.temperatureScale && !options.temperatureOffset)  // which a scale of its own would make 0
