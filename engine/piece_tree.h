@@ -17,8 +17,8 @@ namespace freevoxels {
 class PieceTree {
  public:
   static constexpr int kCubeEdge = SparseGrid<std::uint8_t>::kNodeEdge * ScalarBricks::kEdge;
-  static constexpr int kLongestEdge = 2 * kCubeEdge;  ///< of a box, in voxels
-  static constexpr int kMostBricks = 1400;            ///< in a box that is longer than kCubeEdge
+  static constexpr int kLongestEdge = kCubeEdge + kCubeEdge / 2;  ///< of a box, in voxels
+  static constexpr int kMostBricks = 1400;                        ///< in a box that is longer than kCubeEdge
 
   /// `bricks` are those with another value than 0, in a volume of `dimensions` voxels.
   PieceTree(const SparseGrid<std::uint8_t>& bricks, glm::ivec3 dimensions);
