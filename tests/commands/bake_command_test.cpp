@@ -92,7 +92,7 @@ TEST_F(BakeCommand, InfoPrintsAndChecksAFile) {
   expectSuccess(run("bake procedural:cloud @a.fvx --resolution 40x24x32 --density-scale 7 --quiet"));
   const ProgramResult text = run("info @a.fvx --check");
   expectSuccess(text);
-  for (const char* part : {"format 1.3", "40x24x32", "float16", "fixed", "chunk index", "all checksums are right"})
+  for (const char* part : {"format 1.4", "40x24x32", "float16", "fixed", "chunk index", "all checksums are right"})
     EXPECT_NE(text.out.find(part), std::string::npos) << part << " in " << text.out;
   const nlohmann::json json = nlohmann::json::parse(run("info @a.fvx --json").out);
   EXPECT_EQ(json["description"]["classification"]["density_scale"], 7.0);
