@@ -155,9 +155,12 @@ class RenderTest(unittest.TestCase):
         self.assertGreater(both[..., 0].max(), 0.05)
         self.assertGreater(both[..., 1].max(), 0.05)
         self.assertEqual(red[..., 1].max(), 0)
-        for wrong, sentence in ((dict(channel=["2"]), "2 channels"), (dict(channel=["0", "1:emission"]), "emission")):
-            with self.assertRaisesRegex(ValueError, sentence):
-                freevoxels.render(dyes, **wrong)
+        mixed = freevoxels.render(dyes, channel=["0:red:0,1:emission", "1:#00ff00:0,1"], **options)
+        self.assertGreater(mixed[..., 0].max(), 0.05)
+        self.assertGreater(mixed[..., 1].max(), 0.05)
+        self.assertGreater(mixed[..., 3].max(), both[..., 3].max() + 0.1, "what emits nothing dims")
+        with self.assertRaisesRegex(ValueError, "2 channels"):
+            freevoxels.render(dyes, channel=["2"])
         with self.assertRaisesRegex(ValueError, "channel"):
             freevoxels.render(dyes)
 
