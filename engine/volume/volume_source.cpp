@@ -5,7 +5,6 @@
 #include <utility>
 
 #include "engine/core/error.h"
-#include "engine/volume/coarse_volume.h"
 
 namespace freevoxels {
 
@@ -36,14 +35,6 @@ ScalarBricks part(const ScalarBricks& values, const VoxelRange& box) {
   return result;
 }
 
-/// As many as a baked file would have, which ends where a chunk holds a level.
-int levelsOf(glm::ivec3 dimensions) {
-  constexpr int kCoarsestEdge = 32;
-  int levels = 1;
-  for (int longest = std::max({dimensions.x, dimensions.y, dimensions.z}); longest > kCoarsestEdge; longest = (longest + 1) / 2) ++levels;
-  return levels;
-}
-
 Volume outlineInMemory(const Volume& volume) {
   Volume outline = outlineOf(volume);
   outline.classification = volume.classification;
@@ -54,30 +45,14 @@ Volume outlineInMemory(const Volume& volume) {
 
 }  // namespace
 
-VolumeInMemory::VolumeInMemory(std::shared_ptr<const Volume> volume)
-    : volume_(std::move(volume)), outline_(outlineInMemory(*volume_)), levels_(levelsOf(volume_->dimensions)) {}
+VolumeInMemory::VolumeInMemory(std::shared_ptr<const Volume> volume) : volume_(std::move(volume)), outline_(outlineInMemory(*volume_)) {}
 
-std::shared_ptr<const Volume> VolumeInMemory::at(int level) const {
-  FV_CHECK_LT(level, levels_);
-  if (level == 0) return volume_;
-  const std::lock_guard lock(mutex_);
-  while (coarser_.size() < std::size_t(level)) {
-    Volume coarse = coarseVolume(coarser_.empty() ? *volume_ : *coarser_.back(), 2, WithoutData::Zero);
-    coarse.classification = volume_->classification;
-    coarse.classificationIsFixed = volume_->classificationIsFixed;
-    coarse.content = volume_->content;
-    coarser_.push_back(std::make_shared<const Volume>(std::move(coarse)));
-  }
-  return coarser_[std::size_t(level) - 1];
-}
-
-SparseGrid<std::uint8_t> VolumeInMemory::bricks(int level) const {
-  const std::shared_ptr<const Volume> volume = at(level);
-  const ScalarBricks& scalars = volume->scalars;
-  SparseGrid<std::uint8_t> cells((volume->dimensions + kEdge - 1) / kEdge);
+SparseGrid<std::uint8_t> VolumeInMemory::bricks(int) const {
+  const ScalarBricks& scalars = volume_->scalars;
+  SparseGrid<std::uint8_t> cells((volume_->dimensions + kEdge - 1) / kEdge);
   for (std::size_t brick = 0; brick < scalars.bricks().size(); ++brick) {
     // The bricks in memory may begin before the box, and then lie in several of those that begin with it.
-    const glm::ivec3 begin = glm::max(scalars.firstVoxel(brick), 0), end = glm::min(scalars.firstVoxel(brick) + kEdge, volume->dimensions);
+    const glm::ivec3 begin = glm::max(scalars.firstVoxel(brick), 0), end = glm::min(scalars.firstVoxel(brick) + kEdge, volume_->dimensions);
     const glm::ivec3 low = begin / kEdge, high = (end - 1) / kEdge;
     for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
       for (cell.y = low.y; cell.y <= high.y; ++cell.y)
@@ -87,11 +62,11 @@ SparseGrid<std::uint8_t> VolumeInMemory::bricks(int level) const {
 }
 
 Volume VolumeInMemory::read(int level, const VoxelRange& box) const {
-  const std::shared_ptr<const Volume> all = at(level);
-  Volume volume = level == 0 ? outline_ : outlineInMemory(*all);
+  FV_CHECK_EQ(level, 0);
+  Volume volume = outline_;
   volume.dimensions = box.extent();
   volume.indexToWorld = glm::translate(volume.indexToWorld, glm::dvec3(box.first));
-  forEachGrid([&](ScalarBricks& read, const ScalarBricks& whole) { read = part(whole, box); }, volume, *all);
+  forEachGrid([&](ScalarBricks& read, const ScalarBricks& all) { read = part(all, box); }, volume, *volume_);
   return volume;
 }
 

@@ -5,9 +5,7 @@
 #include <cstdint>
 #include <glm/glm.hpp>
 #include <memory>
-#include <mutex>
 #include <string>
-#include <vector>
 
 #include "engine/core/stages.h"
 #include "engine/volume/sparse_grid.h"
@@ -45,26 +43,21 @@ class VolumeSource {
   virtual std::string checksum() const { return {}; }
 };
 
-/// A volume in memory. Its coarser levels are made of means of densities (WithoutData::Zero) when they are first asked for.
+/// A volume in memory, of one level.
 class VolumeInMemory : public VolumeSource {
  public:
   explicit VolumeInMemory(std::shared_ptr<const Volume> volume);
 
   bool isInMemory() const override { return true; }
-  int levels() const override { return levels_; }
-  const Volume& outline(int level) const override { return level == 0 ? outline_ : *at(level); }
-  SparseGrid<std::uint8_t> bricks(int level) const override;
+  int levels() const override { return 1; }
+  const Volume& outline(int) const override { return outline_; }
+  SparseGrid<std::uint8_t> bricks(int) const override;
   Volume read(int level, const VoxelRange& box) const override;
   std::shared_ptr<const Volume> whole(const Progress&) const override { return volume_; }
 
  private:
-  std::shared_ptr<const Volume> at(int level) const;
-
   const std::shared_ptr<const Volume> volume_;
   const Volume outline_;
-  const int levels_;
-  mutable std::mutex mutex_;
-  mutable std::vector<std::shared_ptr<const Volume>> coarser_;  ///< those that were made, from level 1 on
 };
 
 /// What is known of a volume without reading it: all of one in memory, the outline of a file.
