@@ -3,12 +3,14 @@
 #include <algorithm>
 #include <utility>
 
+#include "engine/attenuation/swept_bricks.h"
+
 namespace freevoxels {
 
 CubeLevel::CubeLevel(std::shared_ptr<const VolumeSource> from, int level, const Classification& classification)
     : source{.source = std::move(from), .level = level, .classification = classification},
       onDevice(outlineOnDevice(outline(), classification)),
-      cubes(bricksAround(source), outline().dimensions) {}
+      cubes(withNeighbours(source.source->bricks(level)), outline().dimensions) {}
 
 void CubeLevel::prepareLights(const Device& device, std::span<const Light> wanted, std::vector<StageTime>& times,
                               const Progress& progress) {

@@ -12,8 +12,8 @@ namespace freevoxels {
 
 /// The bricks of a node of the grid, in bricks.
 struct PieceTree::Part {
-  glm::ivec3 first, end;
-  std::size_t count;
+  glm::ivec3 node, first, end;
+  std::size_t count = 0;
 };
 
 namespace {
@@ -24,10 +24,14 @@ struct Cut {
   std::size_t part = 0;
 };
 
-/// Sorts parts along an axis, and calls `visit(part, gap)` for each plane that cuts none of them, with the width of the gap there.
+template <typename Part>
+void sortAlong(std::span<Part> parts, int axis) {
+  std::ranges::sort(parts, {}, [axis](const Part& part) { return std::tuple(part.first[axis], part.first.z, part.first.y, part.first.x); });
+}
+
+/// Calls `visit(part, gap)` for each plane that cuts no part, with the width of the gap there. Parts are sorted along the axis.
 template <typename Part, typename Visit>
-void forEachGap(std::span<Part> parts, int axis, const Visit& visit) {
-  std::ranges::sort(parts, {}, [&](const Part& part) { return std::tuple(part.first[axis], part.first.z, part.first.y, part.first.x); });
+void forEachGap(std::span<const Part> parts, int axis, const Visit& visit) {
   int end = parts.front().end[axis];
   for (std::size_t i = 1; i < parts.size(); ++i) {
     if (parts[i].first[axis] >= end) visit(i, parts[i].first[axis] - end);
@@ -41,13 +45,15 @@ template <typename Part>
 Cut bestCut(std::span<Part> parts) {
   Cut best;
   std::tuple<bool, std::size_t> least{true, std::numeric_limits<std::size_t>::max()};
-  for (int axis = 0; axis < 3; ++axis)
-    forEachGap(parts, axis, [&](std::size_t part, int gap) {
+  for (int axis = 0; axis < 3; ++axis) {
+    sortAlong(parts, axis);
+    forEachGap(std::span<const Part>(parts), axis, [&](std::size_t part, int gap) {
       const std::tuple rank(gap == 0, std::size_t(std::abs(std::ptrdiff_t(2 * part) - std::ptrdiff_t(parts.size()))));
       if (rank >= least) return;
       least = rank;
       best = {.axis = axis, .part = part};
     });
+  }
   FV_CHECK_LT(std::size_t(0), best.part);
   return best;
 }
@@ -57,20 +63,14 @@ Cut bestCut(std::span<Part> parts) {
 PieceTree::PieceTree(const SparseGrid<std::uint8_t>& bricks, glm::ivec3 dimensions) {
   using Bricks = SparseGrid<std::uint8_t>;
   std::vector<Part> parts;
-  for (std::size_t node = 0; node < bricks.nodes().size(); ++node) {
-    Part part{.first = glm::ivec3(Bricks::kNodeEdge), .end = glm::ivec3(0), .count = 0};
-    for (int i = 0; i < int(bricks.nodes()[node].size()); ++i) {
-      if (bricks.nodes()[node][std::size_t(i)] == 0) continue;
-      const glm::ivec3 place(i % Bricks::kNodeEdge, i / Bricks::kNodeEdge % Bricks::kNodeEdge, i / (Bricks::kNodeEdge * Bricks::kNodeEdge));
-      part.first = glm::min(part.first, place);
-      part.end = glm::max(part.end, place + 1);
-      ++part.count;
-    }
-    if (part.count == 0) continue;
-    part.first += bricks.places()[node] * Bricks::kNodeEdge;
-    part.end += bricks.places()[node] * Bricks::kNodeEdge;
-    parts.push_back(part);
-  }
+  bricks.forEach([&](glm::ivec3 brick, std::uint8_t) {  // node by node
+    const glm::ivec3 node = brick / Bricks::kNodeEdge;
+    if (parts.empty() || parts.back().node != node) parts.push_back({.node = node, .first = brick, .end = brick + 1});
+    Part& part = parts.back();
+    part.first = glm::min(part.first, brick);
+    part.end = glm::max(part.end, brick + 1);
+    ++part.count;
+  });
   if (!parts.empty()) add(parts, dimensions);
 }
 
@@ -91,7 +91,7 @@ int PieceTree::add(std::span<Part> parts, glm::ivec3 dimensions) {
     return number;
   }
   const Cut cut = bestCut(parts);
-  forEachGap(parts, cut.axis, [](std::size_t, int) {});  // in the order of that axis again
+  sortAlong(parts, cut.axis);
   const int at = parts[cut.part].first[cut.axis] * ScalarBricks::kEdge;
   const int low = add(parts.first(cut.part), dimensions), high = add(parts.subspan(cut.part), dimensions);
   nodes_[std::size_t(number)] = {.axis = cut.axis, .at = at, .low = low, .high = high};

@@ -22,11 +22,6 @@ layout(scalar, binding = 3) readonly buffer Bricks { ivec2 bricks[]; };  // plac
 
 const float kAtSource = 1e-3;  // in voxels: at a smaller distance from a light the direction is undefined
 
-float depthUpTo(vec3 position) {
-  const int plane = (int(round(position[planes.fan.axis])) - planes.fan.firstPlane) * planes.fan.direction;
-  return plane < 0 ? 0.0 : rayDepth(planes.fan, position);
-}
-
 uint codeOf(ivec2 side, int plane) {
   const int axis = planes.fan.axis;
   vec3 center;
@@ -40,10 +35,10 @@ uint codeOf(ivec2 side, int plane) {
   const vec3 layer = toLight / max(size.x, max(size.y, size.z));
   float depth;
   if (kScalars) {
-    depth = depthUpTo(center + layer);
+    depth = depthUpTo(planes.fan, center + layer);
   } else {
     const int voxel = planes.slab.origin + plane * planes.slab.planeStride + side.x * planes.slab.strideA + side.y * planes.slab.strideB;
-    depth = depthUpTo(center) + 0.5 * texelFetch(extinction, voxel).x * length(planes.indexToWorld * layer);
+    depth = depthUpTo(planes.fan, center) + 0.5 * texelFetch(extinction, voxel).x * length(planes.indexToWorld * layer);
   }
   return min(uint(sqrt(clamp(depth / kOpaqueDepth, 0.0, 1.0)) * 65535.0 + 0.5), kOtherFan - 1);
 }

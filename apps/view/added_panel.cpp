@@ -51,30 +51,23 @@ bool drawLook(AddedVolume& volume) {
 
 }  // namespace
 
-std::vector<AddedVolume> AddedPanel::shown() const {
-  std::vector<AddedVolume> volumes;
-  for (const Entry& entry : entries_)
-    if (entry.isShown) volumes.push_back(entry.volume);
-  return volumes;
-}
-
 /// Takes the volumes of the scene where something else has changed them: a scene that was opened, an edit that was undone.
 void AddedPanel::follow(const ViewState& state) {
-  if (shown() == state.scene.added) return;
+  if (shownOf(entries_) == state.scene.added) return;
   entries_.clear();
   for (const AddedVolume& volume : state.scene.added) entries_.push_back({volume});
 }
 
 void AddedPanel::drawEntry(ViewState& state, std::size_t index, bool& isRemoved) {
-  Entry& entry = entries_[index];
+  WithEye<AddedVolume>& entry = entries_[index];
   ImGui::PushID(int(index));
   bool changed = checkBox("##shown", &entry.isShown);
   hint("Whether the volume is drawn");
   ImGui::SameLine();
-  const std::string name = std::filesystem::path(entry.volume.input.volume).filename().string();
+  const std::string name = std::filesystem::path(entry.item.input.volume).filename().string();
   if (ImGui::TreeNode("volume", "%s", name.c_str())) {
-    changed |= drawOffset(entry.volume, state.latest ? state.latest->scene.volume->voxelSize() : 0.01);
-    changed |= drawLook(entry.volume);
+    changed |= drawOffset(entry.item, state.latest ? state.latest->scene.volume->voxelSize() : 0.01);
+    changed |= drawLook(entry.item);
     if (ImGui::Button("Remove", {-1.0f, 0.0f})) isRemoved = true;
     ImGui::TreePop();
   }
@@ -109,7 +102,7 @@ void AddedPanel::draw(ViewState& state) {
     state.changed = true;
   }
   drawAdding(state);
-  if (state.changed) state.scene.added = shown();
+  if (state.changed) state.scene.added = shownOf(entries_);
   state.changed |= changedBefore;
 }
 

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/eye_list.h"
 #include "apps/view/view_state.h"
 #include "engine/description/scene_description.h"
 
@@ -15,18 +16,11 @@ class AddedPanel {
   void draw(ViewState& state);
 
  private:
-  /// A volume of the list, which is not drawn while its eye is closed.
-  struct Entry {
-    AddedVolume volume;
-    bool isShown = true;
-  };
-
   void follow(const ViewState& state);
   void drawEntry(ViewState& state, std::size_t index, bool& isRemoved);
   void drawAdding(ViewState& state);
-  std::vector<AddedVolume> shown() const;
 
-  std::vector<Entry> entries_;
+  std::vector<WithEye<AddedVolume>> entries_;
   std::string typed_;  ///< the volume to add
 };
 

@@ -40,13 +40,6 @@ bool drawWeight(ChannelStyle& style) {
 
 }  // namespace
 
-std::vector<ChannelStyle> ChannelPanel::shown() const {
-  std::vector<ChannelStyle> channels;
-  for (const Entry& entry : entries_)
-    if (entry.isShown) channels.push_back(entry.style);
-  return channels;
-}
-
 /// Takes the channels of the scene where something else has changed them, and those that a file shows by itself. Colours are given, so that
 /// they stay when another channel is hidden.
 void ChannelPanel::follow(const ViewState& state) {
@@ -61,27 +54,27 @@ void ChannelPanel::follow(const ViewState& state) {
   entries_.clear();
   for (const ChannelStyle& style : given.empty() && isMade ? state.latest->channels : given) {
     entries_.push_back({style});
-    entries_.back().style.color = channelColor(style, entries_.size() - 1);
+    entries_.back().item.color = channelColor(style, entries_.size() - 1);
   }
 }
 
 bool ChannelPanel::drawEntry(ViewState& state, std::size_t index, bool& isRemoved) {
-  Entry& entry = entries_[index];
+  WithEye<ChannelStyle>& entry = entries_[index];
   ImGui::PushID(int(index));
   bool changed = checkBox("##shown", &entry.isShown);
   hint("Whether the channel is drawn");
   ImGui::SameLine();
-  glm::dvec3 color(channelColor(entry.style, index));
+  glm::dvec3 color(channelColor(entry.item, index));
   if (editSwatch("##color", color)) {
-    entry.style.color = glm::vec3(color);
+    entry.item.color = glm::vec3(color);
     changed = true;
   }
   ImGui::SameLine();
-  if (ImGui::TreeNode("channel", "%s", entry.style.name.c_str())) {
-    changed |= drawFunction(entry.style);
-    changed |= drawWindow(state, entry.style);
-    changed |= drawWeight(entry.style);
-    changed |= tick("Emission", entry.style.emits);
+  if (ImGui::TreeNode("channel", "%s", entry.item.name.c_str())) {
+    changed |= drawFunction(entry.item);
+    changed |= drawWindow(state, entry.item);
+    changed |= drawWeight(entry.item);
+    changed |= tick("Emission", entry.item.emits);
     hint("It sends out light, and dims nothing", "--channel NAME:emission");
     if (ImGui::Button("Remove", {-1.0f, 0.0f})) isRemoved = changed = true;
     ImGui::TreePop();
@@ -97,7 +90,7 @@ bool ChannelPanel::drawAdding(ViewState& state) {
   bool isAdded = false;
   attempt(state, [&] {
     entries_.push_back({readChannel("channel", typed_)});
-    entries_.back().style.color = channelColor(entries_.back().style, entries_.size() - 1);
+    entries_.back().item.color = channelColor(entries_.back().item, entries_.size() - 1);
     typed_.clear();
     isAdded = true;
   });
@@ -120,8 +113,8 @@ void ChannelPanel::draw(ViewState& state, std::size_t grids) {
   if (!changed) return;
   ClassificationDescription& look = state.scene.classification;
   const bool hadNone = look.channels.empty();
-  if (shown().empty()) return;  // a volume without any would be drawn as a grid
-  look.channels = given_ = shown();
+  if (shownOf(entries_).empty()) return;  // a volume without any would be drawn as a grid
+  look.channels = given_ = shownOf(entries_);
   if (hadNone) look.transferFunction.reset(), look.window.reset(), look.densityScale.reset();
   state.changed = true;
 }

@@ -5,6 +5,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/eye_list.h"
 #include "apps/view/view_state.h"
 #include "engine/volume/channels.h"
 
@@ -16,18 +17,11 @@ class ChannelPanel {
   void draw(ViewState& state, std::size_t grids);
 
  private:
-  /// A channel of the list, which is not drawn while its eye is closed.
-  struct Entry {
-    ChannelStyle style;
-    bool isShown = true;
-  };
-
   void follow(const ViewState& state);
   bool drawEntry(ViewState& state, std::size_t index, bool& isRemoved);
   bool drawAdding(ViewState& state);
-  std::vector<ChannelStyle> shown() const;
 
-  std::vector<Entry> entries_;
+  std::vector<WithEye<ChannelStyle>> entries_;
   std::string volume_;               ///< that they are of
   std::vector<ChannelStyle> given_;  ///< those of the scene when they were taken from it
   std::string typed_;                ///< the channel to add

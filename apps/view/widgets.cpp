@@ -37,6 +37,15 @@ bool slideBy(const char* name, double& value, double low, double high, const cha
   return true;
 }
 
+bool editColorBy(const char* name, glm::dvec3& linear, ImGuiColorEditFlags flags) {
+  const double brightness = std::max({linear.r, linear.g, linear.b, 1.0});
+  glm::vec3 shown(linear / brightness);
+  for (int c = 0; c < 3; ++c) shown[c] = srgbFromLinear(shown[c]);
+  if (!ImGui::ColorEdit3(name, &shown.x, flags)) return false;
+  for (int c = 0; c < 3; ++c) linear[c] = roundedTo(brightness * double(linearFromSrgb(shown[c])), 1e-4);
+  return true;
+}
+
 }  // namespace
 
 const char* beginRow(const char* label) {
@@ -90,19 +99,6 @@ std::uint32_t shownColor(glm::dvec3 linear, float alpha) {
   return ImGui::ColorConvertFloat4ToU32(
       {srgbFromLinear(cut.r), srgbFromLinear(cut.g), srgbFromLinear(cut.b), alpha});
 }
-
-namespace {
-
-bool editColorBy(const char* name, glm::dvec3& linear, ImGuiColorEditFlags flags) {
-  const double brightness = std::max({linear.r, linear.g, linear.b, 1.0});
-  glm::vec3 shown(linear / brightness);
-  for (int c = 0; c < 3; ++c) shown[c] = srgbFromLinear(shown[c]);
-  if (!ImGui::ColorEdit3(name, &shown.x, flags)) return false;
-  for (int c = 0; c < 3; ++c) linear[c] = roundedTo(brightness * double(linearFromSrgb(shown[c])), 1e-4);
-  return true;
-}
-
-}  // namespace
 
 bool editColor(const char* label, glm::dvec3& linear) {
   return editColorBy(beginRow(label), linear, ImGuiColorEditFlags_None);

@@ -7,7 +7,6 @@
 #include <map>
 #include <optional>
 #include <system_error>
-#include <tuple>
 #include <utility>
 
 #include "embedded/light_planes.h"
@@ -15,10 +14,12 @@
 #include "engine/attenuation/island_shadows.h"
 #include "engine/attenuation/islands.h"
 #include "engine/attenuation/ray_sweep.h"
+#include "engine/attenuation/swept_bricks.h"
+#include "engine/attenuation/voxel_values.h"
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
 #include "engine/octree/device_volume.h"
-#include "engine/volume/transfer_table.h"
+#include "engine/octree/occupied_cells.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/gather_interface.h"
 
@@ -29,7 +30,6 @@ namespace {
 constexpr int kEdge = ScalarBricks::kEdge;
 constexpr VkPipelineStageFlags2 kTransfer = VK_PIPELINE_STAGE_2_TRANSFER_BIT;
 constexpr int kMaxPlanes = 8, kMinPlanes = 2;  ///< that are swept at a time
-constexpr std::size_t kLayersOfSlab = 2;       ///< of bricks, at most
 
 glm::ivec2 sidesOf(const FaceRays& fan, glm::ivec3 dimensions) {
   return {dimensions[(fan.axis + 1) % 3], dimensions[(fan.axis + 2) % 3]};
@@ -51,79 +51,16 @@ std::uint64_t groupCount(const FaceRays& fan) {
 constexpr int kBrickFace = kEdge * kEdge;  // voxels of a plane in a brick
 static_assert(shader::kLightBrickEdge == kEdge);
 
-/// Cells of kSkipGroup³ voxels of a box.
-glm::ivec3 cellsOf(glm::ivec3 dimensions) {
-  return (dimensions + shader::kSkipGroup - 1) / shader::kSkipGroup;
-}
-
 /// What a face of a sweep takes on the device, if the light is kept in all bricks.
 std::uint64_t sweepBytes(const FaceRays& fan, glm::ivec3 dimensions, int planes) {
   const glm::ivec2 sides = sidesOf(fan, dimensions), bricks = (sides + kEdge - 1) / kEdge;
-  const glm::ivec3 cells = cellsOf(dimensions);
+  const glm::ivec3 cells = (dimensions + OccupiedCells::kEdge - 1) / OccupiedCells::kEdge;
   return slabVoxels(sides, planes) * sizeof(float) + fan.rays() * sizeof(float) + (1 + groupCount(fan)) * sizeof(std::uint32_t) +
          depthBytes(fan, planes) +
          std::uint64_t(bricks.x) * std::uint64_t(bricks.y) *
-             (std::uint64_t(kBrickFace * planes) * sizeof(std::uint16_t) + kLayersOfSlab * sizeof(glm::ivec2)) +
+             (std::uint64_t(kBrickFace * planes) * sizeof(std::uint16_t) + SweptBricks::kLayersOfSlab * sizeof(glm::ivec2)) +
          std::uint64_t(cells.x) * std::uint64_t(cells.y) * std::uint64_t(cells.z);
 }
-
-/// Calls `visit` with the bricks of a grid that are marked and in a box, by their places in it.
-template <typename Visit>
-void forEachBrickIn(const SparseGrid<std::uint8_t>& grid, const VoxelRange& box, const Visit& visit) {
-  const glm::ivec3 first = box.first / kEdge, counts = (box.extent() + kEdge - 1) / kEdge;
-  if (double(counts.x) * double(counts.y) * double(counts.z) >
-      double(grid.nodes().size() * std::tuple_size_v<SparseGrid<std::uint8_t>::Node>)) {
-    grid.forEach([&](glm::ivec3 brick, std::uint8_t) {
-      if (glm::all(glm::greaterThanEqual(brick, first)) && glm::all(glm::lessThan(brick, first + counts))) visit(brick - first);
-    });
-    return;
-  }
-  glm::ivec3 place;
-  for (place.z = 0; place.z < counts.z; ++place.z)
-    for (place.y = 0; place.y < counts.y; ++place.y)
-      for (place.x = 0; place.x < counts.x; ++place.x)
-        if (grid.at(first + place) != 0) visit(place);
-}
-
-/// What a sweep looks up of a voxel: its extinction per world unit, or its scalar in intervals of the transfer function's table.
-class VoxelValues {
- public:
-  explicit VoxelValues(const SourceLevel& level) : classification_(level.classification) {
-    const Volume& volume = level.outline();
-    if (classification_.isPost(volume)) table_.emplace(*classification_.transferFunction, volume.minimum, volume.maximum);
-  }
-  bool areScalars() const { return table_.has_value(); }
-  float outside() const { return areScalars() ? -1.0f : 0.0f; }
-  const TransferTable& table() const { return *table_; }
-  float at(float scalar) const {
-    if (!areScalars()) return float(classify(classification_, scalar).extinction);
-    const std::uint16_t code = table_->code(scalar);
-    return code == 0 ? -1.0f : (float(code) - 1.0f) * (float(shader::kTransferIntervals) / float(shader::kScalarCodes));
-  }
-
- private:
-  const Classification& classification_;
-  std::optional<TransferTable> table_;
-};
-
-}  // namespace
-
-SparseGrid<std::uint8_t> bricksAround(const SourceLevel& level) {
-  SparseGrid<std::uint8_t> around = level.source->bricks(level.level);
-  for (int axis = 0; axis < 3; ++axis) {
-    const SparseGrid<std::uint8_t> from = around;
-    from.forEach([&](glm::ivec3 brick, std::uint8_t) {
-      for (const int by : {-1, 1}) {
-        glm::ivec3 beside = brick;
-        beside[axis] += by;
-        if (beside[axis] >= 0 && beside[axis] < from.dimensions()[axis]) around[beside] = 1;
-      }
-    });
-  }
-  return around;
-}
-
-namespace {
 
 /// The boxes of a level through which lights are swept: the level's, or where that has more voxels than can be numbered, those of islands.
 std::vector<VoxelRange> sweptBoxes(const SourceLevel& level, const SparseGrid<std::uint8_t>& around) {
@@ -143,7 +80,8 @@ RaySource fromBox(const RaySource& source, const VoxelRange& box) {
 /// The sweep of one face of a box.
 class SweptLight::Sweep {
  public:
-  /// `around` marks the bricks whose codes are kept, and `withData` those that have data. With `isIsland`, there are further boxes.
+  /// `withData` marks the bricks of the level that have data, and `around` those whose light is kept. With `isIsland`, there are further
+  /// boxes.
   Sweep(SweptLight& light, const Device& device, const SourceLevel& level, const VoxelValues& values,
         const SparseGrid<std::uint8_t>& withData, const SparseGrid<std::uint8_t>& around, const VoxelRange& box, const FaceRays& fan,
         int fanNumber, bool isIsland)
@@ -151,10 +89,9 @@ class SweptLight::Sweep {
         device_(device),
         level_(level),
         values_(values),
-        withData_(withData),
-        around_(around),
         box_(box),
         fan_(fan),
+        kept_(around, box, fan),
         fanNumber_(fanNumber),
         isIsland_(isIsland),
         dimensions_(box.extent()),
@@ -165,7 +102,8 @@ class SweptLight::Sweep {
     if (const std::uint64_t bytes = sweepBytes(fan_, dimensions_, planes_); bytes > device.availableBytes())
       fail(ErrorKind::OutOfMemory, "exact shadows of this light need {} MiB, and {} has {} MiB left: use {}", bytes >> 20,
            device.description().name, device.availableBytes() >> 20, Parameter("light-attenuation", "table"));
-    slab_ = Buffer(device, slabVoxels() * sizeof(float), MemoryUse::Device, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+    slab_ =
+        Buffer(device, slabVoxels() * sizeof(float), MemoryUse::Device, "extinction around rays", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     slabTexels_ = TexelView(device, slab_, VK_FORMAT_R32_SFLOAT);
     carried_ = Buffer(device, fan.rays() * sizeof(float), MemoryUse::Device, "ray depths between slabs");
     groups_ = Buffer(device, (1 + groupCount(fan)) * sizeof(std::uint32_t), MemoryUse::Device, "groups of rays");
@@ -175,15 +113,11 @@ class SweptLight::Sweep {
     const bool depthsAreTexels = depths_.bytes() / sizeof(std::uint32_t) <= mostTexels;
     depthTexels_ = TexelView(device, depths_, VK_FORMAT_R32_UINT, depthsAreTexels ? depths_.bytes() : sizeof(std::uint32_t));
     frame_ = Buffer(device, sizeof(shader::LightPlanes), MemoryUse::Device, "planes of a light", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT);
-    listBricks();
-    std::vector<std::uint8_t> near = nearOccupied();
-    const bool skips = near.size() <= mostTexels;
-    if (!skips) near.resize(1);
-    std::tie(near_, nearTexels_) = uploadTexels(device, std::as_bytes(std::span(near)), VK_FORMAT_R8_UINT, "cells near occupied ones");
-    const glm::ivec3 cells = cellsOf(dimensions_);
-    cellCounts_ = Buffer(device, sizeof cells, MemoryUse::Device, "counts of cells");
-    upload(device, cellCounts_, std::as_bytes(std::span(&cells, 1)));
-    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars(), isIsland, skips, true});
+    const std::size_t most = std::max(kept_.mostInALayer(), std::size_t(1));
+    codes_ = Buffer(device, most * std::size_t(kBrickFace * planes_) * sizeof(std::uint16_t), MemoryUse::Device, "codes of light");
+    bricks_ = Buffer(device, SweptBricks::kLayersOfSlab * most * sizeof(glm::ivec2), MemoryUse::Device, "bricks whose light is kept");
+    if (Cells cells = cellsOfBricks(withData, box); cells.values.size() <= mostTexels) cells_.emplace(device, std::move(cells));
+    sweep_ = makeComputePipeline(device, shaders::ray_sweep, {values.areScalars(), isIsland, cells_.has_value(), true});
     lookUp_ = makeComputePipeline(device, shaders::light_planes, {values.areScalars(), depthsAreTexels});
     if (!values.areScalars()) return;
     const std::vector<glm::vec4> texels = values.table().texels(kStoredDepth * level.outline().voxelSize());
@@ -215,38 +149,7 @@ class SweptLight::Sweep {
   std::uint64_t slabVoxels() const { return freevoxels::slabVoxels(sides_, planes_); }
   int coordinateOf(int plane) const { return fan_.firstPlane + fan_.direction * plane; }
 
-  /// The bricks whose light is kept, by layer; and room for those of the layers that planes of a slab are in.
-  void listBricks() {
-    bricksOfLayers_.resize(std::size_t((dimensions_[fan_.axis] + kEdge - 1) / kEdge));
-    forEachBrickIn(around_, box_, [&](glm::ivec3 place) {
-      bricksOfLayers_[std::size_t(place[fan_.axis])].push_back(glm::ivec2(place[(fan_.axis + 1) % 3], place[(fan_.axis + 2) % 3]));
-    });
-    std::size_t most = 1;
-    for (std::vector<glm::ivec2>& bricks : bricksOfLayers_) {
-      std::ranges::sort(bricks, {}, [](glm::ivec2 place) { return std::tuple(place.y, place.x); });
-      most = std::max(most, bricks.size());
-    }
-    codes_ = Buffer(device_, most * std::size_t(kBrickFace * planes_) * sizeof(std::uint16_t), MemoryUse::Device, "codes of light");
-    bricks_ = Buffer(device_, kLayersOfSlab * most * sizeof(glm::ivec2), MemoryUse::Device, "bricks whose light is kept");
-  }
-
-  /// Whether a cell or one beside it has data, by cell.
-  std::vector<std::uint8_t> nearOccupied() const {
-    constexpr int kCells = kEdge / shader::kSkipGroup;  // along a brick's edge
-    const glm::ivec3 cells = cellsOf(dimensions_);
-    std::vector<std::uint8_t> near(std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z), 0);
-    forEachBrickIn(withData_, box_, [&](glm::ivec3 place) {
-      const glm::ivec3 first = place * kCells - 1;
-      const glm::ivec3 low = glm::max(first, 0), high = glm::min(first + kCells + 1, cells - 1);
-      for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
-        for (cell.y = low.y; cell.y <= high.y; ++cell.y)
-          for (cell.x = low.x; cell.x <= high.x; ++cell.x)
-            near[std::size_t(cell.x) + std::size_t(cells.x) * (std::size_t(cell.y) + std::size_t(cells.y) * std::size_t(cell.z))] = 1;
-    });
-    return near;
-  }
-
-  /// The bricks of the layer that has a plane; those of the last two layers are kept.
+  /// The voxels of a layer of bricks; those of the last two layers stay in memory.
   const Volume& layer(int number) {
     const auto found = layers_.find(number);
     if (found != layers_.end()) return found->second;
@@ -275,135 +178,102 @@ class SweptLight::Sweep {
     });
   }
 
-  void sweepPlanes(int begin, int end, std::vector<StageTime>& times) {
-    {
-      const StageTimer timer(times, "read planes");
-      slabValues_.resize(slabVoxels());
-      for (int i = 0; i <= planes_; ++i)
-        fill(coordinateOf(begin - 1 + i),
-             std::span(slabValues_).subspan(std::size_t(i) * std::size_t(planeStride_), std::size_t(planeStride_)));
-      upload(device_, slab_, std::as_bytes(std::span(slabValues_)));
-    }
-    // The depths of plane 2k and 2k + 1 are in pair k; in the buffer, pair begin / 2 - 1 is the first. Places among all planes may wrap
-    // around, as they do in the shaders.
-    const VkDeviceSize pairBytes = fan_.rays() * sizeof(std::uint32_t);
-    const VkDeviceAddress depths = depths_.address() - pairBytes * VkDeviceSize(std::int64_t(begin / 2 - 1));
-    const shader::FaceRays fan = deviceFan(fan_, depths);
-    const shader::RaySlab place{.begin = begin,
-                                .end = end,
-                                .origin = int(std::uint32_t(1 + strideB_) + std::uint32_t(1 - begin) * std::uint32_t(planeStride_)),
-                                .planeStride = planeStride_,
-                                .strideA = 1,
-                                .strideB = strideB_};
-    // Extinctions of the transfer function's table are in another unit.
-    const double unit = values_.areScalars() ? 1.0 / (kStoredDepth * level_.outline().voxelSize()) : 1.0;
-    const std::vector<std::uint32_t> groups = groupsOf(begin, end);
+  /// Fills the slab with planes from the one before `begin` on.
+  void readSlab(int begin) {
+    slabValues_.resize(slabVoxels());
+    for (int i = 0; i <= planes_; ++i)
+      fill(coordinateOf(begin - 1 + i),
+           std::span(slabValues_).subspan(std::size_t(i) * std::size_t(planeStride_), std::size_t(planeStride_)));
+    upload(device_, slab_, std::as_bytes(std::span(slabValues_)));
+  }
+
+  /// Marches the rays that are read.
+  void recordRays(Commands& commands, const shader::FaceRays& fan, const shader::RaySlab& slab) {
+    std::vector<std::uint32_t> groups = kept_.groupsOf(slab.begin, slab.end);
+    const std::uint64_t count = groups.size();
+    groups.insert(groups.begin(), std::uint32_t(count));
     upload(device_, groups_, std::as_bytes(std::span(groups)));
-    Commands commands(device_);
     commands.beginPass("light sweep");
-    if (begin > 0) {
+    if (slab.begin > 0) {
+      const VkDeviceSize pairBytes = fan_.rays() * sizeof(std::uint32_t);
       commands.copy(depths_, depths_, {.srcOffset = pairBytes * VkDeviceSize(planes_ / 2), .dstOffset = 0, .size = pairBytes});
       commands.barrier(kTransfer, kComputeStage);
     }
-    const TexelView& table = values_.areScalars() ? tableTexels_ : slabTexels_;
-    const std::array<Binding, 6> rays{&slabTexels_, &carried_, &table, &nearTexels_, &cellCounts_, &groups_};
-    if (groups.front() > 0)
-      commands.dispatchLinear(sweep_, rays,
-                              shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = place},
-                              std::uint64_t(groups.front()) * shader::kRaySweepThreads);
+    if (count == 0) return;
+    // Extinctions of the transfer function's table are in another unit.
+    const double unit = values_.areScalars() ? 1.0 / (kStoredDepth * level_.outline().voxelSize()) : 1.0;
+    const std::array<Binding, 6> bindings{&slabTexels_,
+                                          &carried_,
+                                          values_.areScalars() ? &tableTexels_ : &slabTexels_,
+                                          cells_ ? &cells_->near() : &depthTexels_,
+                                          cells_ ? &cells_->dimensions() : &carried_,
+                                          &groups_};
+    commands.dispatchLinear(sweep_, bindings,
+                            shader::RaySweepPush{.fan = fan, .indexToWorld = unit * indexToWorld_, .sides = sides_, .slab = slab},
+                            count * shader::kRaySweepThreads);
     commands.barrier(kComputeStage, kComputeStage);
+  }
+
+  /// Looks up the depths of the voxels in bricks whose light is kept, in the order of `stretches`. Returns the number of codes.
+  std::size_t recordLookUps(Commands& commands, const shader::FaceRays& fan, const shader::RaySlab& slab,
+                            std::span<const SweptBricks::Stretch> stretches) {
     commands.beginPass("light depths");
     commands.update(frame_, shader::LightPlanes{.fan = fan,
-                                                .slab = place,
+                                                .slab = slab,
                                                 .sides = sides_,
                                                 .indexToWorld = indexToWorld_,
                                                 .place = source_.place,
                                                 .atInfinity = source_.atInfinity ? 1 : 0,
                                                 .fanIndex = fanNumber_});
-    const std::array<Binding, 5> lookUps{&frame_, &slabTexels_, &codes_, &bricks_, &depthTexels_};
-    const std::vector<Stretch> stretches = stretchesOf(begin, end);
+    const std::array<Binding, 5> bindings{&frame_, &slabTexels_, &codes_, &bricks_, &depthTexels_};
+    std::vector<glm::ivec2> bricks;
     std::size_t codeCount = 0;
-    for (const Stretch& stretch : stretches) {
-      const std::size_t perPlane = stretch.bricks->size() * kBrickFace;
-      if (perPlane > 0)
-        commands.dispatchLinear(lookUp_, lookUps,
-                                shader::LightPlanesPush{.rays = addressWords(depths_.address()),
-                                                        .firstBrick = stretch.firstBrick,
-                                                        .brickCount = int(stretch.bricks->size()),
-                                                        .firstPlane = stretch.begin,
-                                                        .firstCode = int(codeCount / 2)},
-                                perPlane / 2, std::uint32_t(stretch.end - stretch.begin));
+    for (const SweptBricks::Stretch& stretch : stretches) {
+      if (stretch.bricks.empty()) continue;
+      const std::size_t perPlane = stretch.bricks.size() * kBrickFace;
+      commands.dispatchLinear(lookUp_, bindings,
+                              shader::LightPlanesPush{.rays = addressWords(depths_.address()),
+                                                      .firstBrick = int(bricks.size()),
+                                                      .brickCount = int(stretch.bricks.size()),
+                                                      .firstPlane = stretch.begin,
+                                                      .firstCode = int(codeCount / 2)},
+                              perPlane / 2, std::uint32_t(stretch.end - stretch.begin));
       codeCount += perPlane * std::size_t(stretch.end - stretch.begin);
+      bricks.insert(bricks.end(), stretch.bricks.begin(), stretch.bricks.end());
     }
+    if (!bricks.empty()) upload(device_, bricks_, std::as_bytes(std::span(bricks)));
+    return codeCount;
+  }
+
+  void sweepPlanes(int begin, int end, std::vector<StageTime>& times) {
+    {
+      const StageTimer timer(times, "read planes");
+      readSlab(begin);
+    }
+    // The depths of plane 2k and 2k + 1 are in pair k; in the buffer, pair begin / 2 - 1 is the first. Places among all planes may wrap
+    // around, as they do in the shaders.
+    const VkDeviceSize pairBytes = fan_.rays() * sizeof(std::uint32_t);
+    const shader::FaceRays fan = deviceFan(fan_, depths_.address() - pairBytes * VkDeviceSize(std::int64_t(begin / 2 - 1)));
+    const shader::RaySlab slab{.begin = begin,
+                               .end = end,
+                               .origin = int(std::uint32_t(1 + strideB_) + std::uint32_t(1 - begin) * std::uint32_t(planeStride_)),
+                               .planeStride = planeStride_,
+                               .strideA = 1,
+                               .strideB = strideB_};
+    const std::vector<SweptBricks::Stretch> stretches = kept_.stretchesOf(begin, end);
+    Commands commands(device_);
+    recordRays(commands, fan, slab);
+    std::vector<std::uint16_t> codes(recordLookUps(commands, fan, slab, stretches));
     commands.submitAndWait();
     addTimes(times, commands.times());
     const StageTimer timer(times, "keep light");
-    std::vector<std::uint16_t> codes(codeCount);
-    if (codeCount > 0) download(device_, codes_, std::as_writable_bytes(std::span(codes)));
+    if (!codes.empty()) download(device_, codes_, std::as_writable_bytes(std::span(codes)));
     std::span<const std::uint16_t> rest(codes);
-    for (const Stretch& stretch : stretches)
+    for (const SweptBricks::Stretch& stretch : stretches)
       for (int plane = stretch.begin; plane < stretch.end; ++plane) {
-        keep(coordinateOf(plane), *stretch.bricks, rest);
-        rest = rest.subspan(stretch.bricks->size() * kBrickFace);
+        keep(coordinateOf(plane), stretch.bricks, rest);
+        rest = rest.subspan(stretch.bricks.size() * kBrickFace);
       }
-  }
-
-  /// How many groups of rays a position in a brick whose light is kept may read on these planes (rayPlace() of ray_lookup.glsl), and their
-  /// numbers. Where no such brick is, nothing is in the way.
-  std::vector<std::uint32_t> groupsOf(int begin, int end) {
-    constexpr int kReach = 4;  // rays: those that are interpolated, and the planes between which positions are
-    isGroupRead_.assign(groupCount(fan_), 0);
-    const auto placeOf = [&](glm::dvec2 side, int plane) {
-      const double up = double(coordinateOf(plane)) - double(fan_.farthest);
-      return (side - glm::dvec2(fan_.origin) - glm::dvec2(fan_.slope) * up) /
-             (double(fan_.spacing) * (1.0 + double(fan_.convergence) * up));
-    };
-    const int firstLayer = std::clamp(coordinateOf(begin - 1), 0, dimensions_[fan_.axis] - 1) / kEdge;
-    const int lastLayer = std::clamp(coordinateOf(end), 0, dimensions_[fan_.axis] - 1) / kEdge;
-    for (int layer = std::min(firstLayer, lastLayer); layer <= std::max(firstLayer, lastLayer); ++layer)
-      for (const glm::ivec2 brick : bricksOfLayers_[std::size_t(layer)]) {
-        glm::dvec2 low(std::numeric_limits<double>::max()), high = -low;
-        for (const int plane : {std::max(begin - 1, 0), end})
-          for (int corner = 0; corner < 4; ++corner) {
-            const glm::dvec2 place = placeOf(glm::dvec2(brick * kEdge + glm::ivec2(corner % 2, corner / 2) * (kEdge - 1)), plane);
-            low = glm::min(low, place);
-            high = glm::max(high, place);
-          }
-        const glm::dvec2 last(fan_.rayCount - 1);
-        const glm::ivec2 first(glm::clamp(low - double(kReach), glm::dvec2(0.0), last)),
-            past(glm::clamp(high + double(kReach), glm::dvec2(0.0), last));
-        for (std::int64_t row = first.y; row <= past.y; ++row)
-          for (std::int64_t group = (row * fan_.rayCount.x + first.x) / shader::kRaySweepThreads;
-               group <= (row * fan_.rayCount.x + past.x) / shader::kRaySweepThreads; ++group)
-            isGroupRead_[std::size_t(group)] = 1;
-      }
-    std::vector<std::uint32_t> groups{0};
-    for (std::size_t group = 0; group < isGroupRead_.size(); ++group)
-      if (isGroupRead_[group] != 0) groups.push_back(std::uint32_t(group));
-    groups.front() = std::uint32_t(groups.size() - 1);
-    return groups;
-  }
-
-  /// Planes in one layer, and the bricks there whose light is kept, of which `firstBrick` is the number of the first one on the device.
-  struct Stretch {
-    int begin, end;
-    const std::vector<glm::ivec2>* bricks;
-    int firstBrick;
-  };
-  /// Uploads the bricks of the stretches.
-  std::vector<Stretch> stretchesOf(int begin, int end) {
-    std::vector<Stretch> stretches;
-    std::vector<glm::ivec2> bricks;
-    for (int plane = begin; plane < end; ++plane) {
-      const std::vector<glm::ivec2>& there = bricksOfLayers_[std::size_t(coordinateOf(plane) / kEdge)];
-      if (stretches.empty() || stretches.back().bricks != &there) {
-        stretches.push_back({.begin = plane, .end = plane, .bricks = &there, .firstBrick = int(bricks.size())});
-        bricks.insert(bricks.end(), there.begin(), there.end());
-      }
-      stretches.back().end = plane + 1;
-    }
-    if (!bricks.empty()) upload(device_, bricks_, std::as_bytes(std::span(bricks)));
-    return stretches;
   }
 
   /// Copies the codes of a plane into the bricks of its layer.
@@ -419,7 +289,7 @@ class SweptLight::Sweep {
       brick[fan_.axis] = number;
       brick[axisA] = bricks[i].x;
       brick[axisB] = bricks[i].y;
-      const auto [place, isNew] = kept_.try_emplace(std::pair(bricks[i].y, bricks[i].x), box_.first / kEdge + brick, BrickCodes());
+      const auto [place, isNew] = layerCodes_.try_emplace(std::pair(bricks[i].y, bricks[i].x), box_.first / kEdge + brick, BrickCodes());
       BrickCodes& ofBrick = place->second.second;
       if (isNew) ofBrick.fill(std::uint16_t(shader::kOtherFan));
       const glm::ivec3 end = glm::min(dimensions_ - brick * kEdge, kEdge);
@@ -433,7 +303,7 @@ class SweptLight::Sweep {
 
   /// Adds the bricks of a layer to the file. What a voxel has through another face stays.
   void storeLayer() {
-    for (auto& [place, kept] : kept_) {
+    for (auto& [place, kept] : layerCodes_) {
       auto& [brick, codes] = kept;
       std::uint32_t& record = light_.records_[brick];
       if (record != 0) {
@@ -445,16 +315,16 @@ class SweptLight::Sweep {
       record = std::uint32_t(light_.codes_.bytes() / sizeof(BrickCodes)) + 1;
       light_.codes_.append(std::as_bytes(std::span(codes)));
     }
-    kept_.clear();
+    layerCodes_.clear();
   }
 
   SweptLight& light_;
   const Device& device_;
   const SourceLevel& level_;
   const VoxelValues& values_;
-  const SparseGrid<std::uint8_t>&withData_, &around_;
   const VoxelRange box_;
   const FaceRays fan_;
+  const SweptBricks kept_;  ///< bricks whose light is kept
   const int fanNumber_;
   const bool isIsland_;
   const glm::ivec3 dimensions_;  ///< of the box
@@ -463,23 +333,21 @@ class SweptLight::Sweep {
   int planes_ = kMaxPlanes;
   const RaySource source_ = fromBox(light_.source_, box_);
   const glm::dmat3 indexToWorld_{level_.outline().indexToWorld};
-  Buffer slab_, carried_, depths_, frame_, codes_, table_;
-  TexelView slabTexels_, tableTexels_;
-  Buffer near_, cellCounts_, bricks_, groups_;
-  std::vector<std::uint8_t> isGroupRead_;  ///< by group of rays
-  TexelView nearTexels_, depthTexels_;
-  std::vector<std::vector<glm::ivec2>> bricksOfLayers_;  ///< whose light is kept: their places on the sides, in bricks
+  Buffer slab_, carried_, depths_, frame_, codes_, table_, bricks_, groups_;
+  TexelView slabTexels_, tableTexels_, depthTexels_;
+  std::optional<OccupiedCells> cells_;  ///< unless there are more than texels of a buffer
   Pipeline sweep_, lookUp_;
   std::vector<float> slabValues_;
   std::map<int, Volume> layers_;
   int keptLayer_ = -1;
-  std::map<std::pair<int, int>, std::pair<glm::ivec3, BrickCodes>> kept_;  ///< of the layer's bricks, by their places on its sides
+  std::map<std::pair<int, int>, std::pair<glm::ivec3, BrickCodes>> layerCodes_;  ///< of the layer's bricks, by their places on its sides
 };
 
 namespace {
 
 [[noreturn]] void failTemporary(const std::system_error& error) {
-  fail(ErrorKind::Output, "the depths towards a light cannot be kept in a temporary file in {}: {}; make room there, or draw without shadows",
+  fail(ErrorKind::Output,
+       "the depths towards a light cannot be kept in a temporary file in {}: {}; make room there, or draw without shadows",
        std::filesystem::temp_directory_path().string(), error.code().message());
 }
 
@@ -488,8 +356,8 @@ namespace {
 SweptLight::SweptLight(const Device& device, const SourceLevel& level, const RaySource& source, std::vector<StageTime>& times,
                        const Progress& progress) try
     : source_(source), records_((level.outline().dimensions + kEdge - 1) / kEdge), codes_(std::filesystem::temp_directory_path()) {
-  const VoxelValues values(level);
-  const SparseGrid<std::uint8_t> withData = level.source->bricks(level.level), around = bricksAround(level);
+  const VoxelValues values(level.outline(), level.classification);
+  const SparseGrid<std::uint8_t> withData = level.source->bricks(level.level), around = withNeighbours(withData);
   std::vector<IslandRays> islands;
   for (const VoxelRange& box : sweptBoxes(level, around))
     islands.push_back({.box = box, .fans = faceRays(box.extent(), fromBox(source, box))});
@@ -520,7 +388,7 @@ SweptLight::SweptLight(const Device& device, const SourceLevel& level, const Ray
 
 std::uint64_t SweptLight::leastBytes(const SourceLevel& level, const RaySource& source) {
   std::uint64_t bytes = 0;
-  for (const VoxelRange& box : sweptBoxes(level, bricksAround(level)))
+  for (const VoxelRange& box : sweptBoxes(level, withNeighbours(level.source->bricks(level.level))))
     for (const FaceRays& fan : faceRays(box.extent(), fromBox(source, box)))
       if (fan.planeCount > 0) bytes = std::max(bytes, sweepBytes(fan, box.extent(), kMinPlanes));
   return bytes;

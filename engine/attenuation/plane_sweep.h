@@ -55,7 +55,4 @@ class SweptLight {
   Spool codes_;
 };
 
-/// Marks the bricks of a level that have data, and their neighbours.
-SparseGrid<std::uint8_t> bricksAround(const SourceLevel& level);
-
 }  // namespace freevoxels

@@ -11,8 +11,10 @@ class OccupiedCells {
  public:
   static constexpr int kEdge = 4;  ///< voxels
 
-  OccupiedCells(const Device& device, const Volume& volume, const Classification& classification);
   /// metCells() of cells of kEdge.
+  OccupiedCells(const Device& device, const Volume& volume, const Classification& classification);
+  /// `met` marks cells of kEdge.
+  OccupiedCells(const Device& device, Cells met);
   const Cells& met() const { return met_; }
   /// On the device, a byte for each cell, x fastest: 1 if it or one of its 26 neighbours is met, otherwise 0.
   const TexelView& near() const { return nearTexels_; }
