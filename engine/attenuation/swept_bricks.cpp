@@ -111,8 +111,9 @@ std::vector<std::uint32_t> SweptBricks::groupsOf(int begin, int end) const {
           low = glm::min(low, ray);
           high = glm::max(high, ray);
         }
+      // Positions beside the rays read the outermost four.
       const glm::dvec2 last(fan_.rayCount - 1);
-      const glm::ivec2 from(glm::clamp(low - kReach, glm::dvec2(0.0), last)), to(glm::clamp(high + kReach, glm::dvec2(0.0), last));
+      const glm::ivec2 from(glm::clamp(low - kReach, glm::dvec2(0.0), last - 3.0)), to(glm::clamp(high + kReach, glm::dvec2(3.0), last));
       for (std::int64_t row = from.y; row <= to.y; ++row)
         for (std::int64_t group = (row * raysOfRow + from.x) / kGroup; group <= (row * raysOfRow + to.x) / kGroup; ++group)
           isRead[std::size_t(group)] = 1;
