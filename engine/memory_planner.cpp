@@ -33,7 +33,7 @@ std::uint64_t leastMemory(const Device& device, const Volume& volume, const Clas
   std::vector<bool> occupied(volume.voxelCount());
   const VoxelClassifier classifier(classification, volume);
   constexpr int n = ScalarBricks::kEdge;
-  for (std::size_t brick = 0; brick < volume.scalars.bricks().size(); ++brick) {
+  for (std::size_t brick = 0; brick < volume.scalars.count(); ++brick) {
     const glm::ivec3 first = volume.scalars.firstVoxel(brick);
     const glm::ivec3 begin = glm::max(first, 0), end = glm::min(first + n, volume.dimensions);
     for (glm::ivec3 v = begin; v.z < end.z; ++v.z)

@@ -78,8 +78,8 @@ double massOf(const Volume& volume) {
 /// The integral of the fourth power of the temperatures, as black bodies radiate, whatever their unit.
 double powerOf(const Volume& volume) {
   double power = 0.0;
-  for (const ScalarBricks::Brick& brick : volume.temperature->values.bricks())
-    for (const float value : brick) power += std::pow(std::max(double(value), 0.0), 4.0);
+  for (std::size_t number = 0; number < volume.temperature->values.count(); ++number)
+    for (const float value : volume.temperature->values.brick(number)) power += std::pow(std::max(double(value), 0.0), 4.0);
   return power * std::pow(volume.voxelSize(), 3.0);
 }
 

@@ -9,6 +9,7 @@
 #include <glm/gtc/packing.hpp>
 #include <limits>
 #include <optional>
+#include <type_traits>
 #include <utility>
 #include <variant>
 
@@ -185,6 +186,16 @@ ScalarBricks readArray(const ArrayView& array, const std::optional<Marker>& mark
     using Comparable = decltype(comparable(typed));
     const std::optional<Comparable> absent = marker ? valueOf(*marker, typed) : std::nullopt;
     const py::gil_scoped_release withoutGil;
+    if constexpr (std::integral<Value> && sizeof(Value) <= sizeof(std::uint16_t)) {
+      using Code = std::make_unsigned_t<Value>;
+      if (!mask) {
+        std::vector<float> values(std::size_t(1) << 8 * sizeof(Code));
+        for (std::size_t code = 0; code < values.size(); ++code)
+          values[code] = absent && Value(code) == *absent ? kInactiveVoxel : float(Value(code));
+        const auto codeAt = [&](glm::ivec3 voxel) { return Code(elementAt<Value>(source.at(voxel), source.isSwapped)); };
+        return ScalarBricks::makeCodes<Code>(source.dimensions, codeAt, std::move(values), watchSignals());
+      }
+    }
     return ScalarBricks::make(
         source.dimensions,
         [&](glm::ivec3 voxel) {

@@ -166,8 +166,8 @@ class SweptLight::Sweep {
     if (coordinate < 0 || coordinate >= dimensions_[fan_.axis]) return;
     const ScalarBricks& bricks = layer(coordinate / kEdge).scalars;
     const int axisA = (fan_.axis + 1) % 3, axisB = (fan_.axis + 2) % 3;
-    tbb::parallel_for(std::size_t(0), bricks.bricks().size(), [&](std::size_t i) {
-      const ScalarBricks::Brick& brick = bricks.bricks()[i];
+    tbb::parallel_for(std::size_t(0), bricks.count(), [&](std::size_t i) {
+      const ScalarBricks::Brick brick = bricks.brick(i);
       const glm::ivec3 first = bricks.firstVoxel(i), end = glm::min(bricks.dimensions() - first, kEdge);
       glm::ivec3 v;
       v[fan_.axis] = coordinate % kEdge;

@@ -21,16 +21,14 @@ static_assert(shader::kMaxExtinction == float(kMaxExtinction));
 
 }  // namespace
 
-DeviceBricks::DeviceBricks(const Device& device, const DeviceVolume& target, const Volume& volume,
-                           const Classification& classification)
+DeviceBricks::DeviceBricks(const Device& device, const DeviceVolume& target, const Volume& volume, const Classification& classification)
     : device_(device),
       target_(target),
       volume_(volume),
       classification_(classification),
       bricks_(volume.scalars),
-      batches_(std::max<std::size_t>(
-          (bricks_.bricks().size() * sizeof(Brick) + kBatchBytes - 1) / kBatchBytes, 1)),
-      bricksPerBatch_(std::clamp<std::size_t>(bricks_.bricks().size(), 1, kBatchBytes / sizeof(Brick))),
+      batches_(std::max<std::size_t>((bricks_.count() * sizeof(Brick) + kBatchBytes - 1) / kBatchBytes, 1)),
+      bricksPerBatch_(std::clamp<std::size_t>(bricks_.count(), 1, kBatchBytes / sizeof(Brick))),
       uploaded_(std::numeric_limits<std::size_t>::max()),
       classifier_(classification, volume),
       scalars_(device, bricksPerBatch_ * sizeof(Brick), MemoryUse::Device, "bricks"),
@@ -41,18 +39,17 @@ DeviceBricks::DeviceBricks(const Device& device, const DeviceVolume& target, con
   if (target.hasColors) colors_ = Buffer(device, scalars_.bytes(), MemoryUse::Device, "colours of bricks");
 }
 
-std::span<const Brick> DeviceBricks::batchOf(std::size_t batch) const {
-  const std::size_t first = batch * bricksPerBatch_;
-  return bricks_.bricks().subspan(first, std::min(bricksPerBatch_, bricks_.bricks().size() - first));
+std::size_t DeviceBricks::sizeOf(std::size_t batch) const {
+  return std::min(bricksPerBatch_, bricks_.count() - batch * bricksPerBatch_);
 }
 
 /// Uploads a value for each voxel of a batch, 0 beyond the box.
 void DeviceBricks::uploadPacked(const Buffer& buffer, std::size_t batch,
                                 const std::function<std::uint32_t(glm::ivec3 voxel)>& valueAt) const {
   constexpr int n = ScalarBricks::kEdge;
-  constexpr std::size_t size = std::tuple_size_v<Brick>;
-  std::vector<std::uint32_t> values(batchOf(batch).size() * size);
-  tbb::parallel_for(std::size_t(0), batchOf(batch).size(), [&](std::size_t i) {
+  constexpr std::size_t size = ScalarBricks::kVoxels;
+  std::vector<std::uint32_t> values(sizeOf(batch) * size);
+  tbb::parallel_for(std::size_t(0), sizeOf(batch), [&](std::size_t i) {
     const glm::ivec3 first = bricks_.firstVoxel(batch * bricksPerBatch_ + i);
     const glm::ivec3 begin = glm::max(-first, 0), end = glm::min(volume_.dimensions - first, n);
     for (glm::ivec3 v(0, 0, begin.z); v.z < end.z; ++v.z)
@@ -64,10 +61,10 @@ void DeviceBricks::uploadPacked(const Buffer& buffer, std::size_t batch,
 }
 
 DeviceBricks::Classified DeviceBricks::classify(std::size_t batch) const {
-  constexpr std::size_t size = std::tuple_size_v<Brick>;
-  const std::size_t values = batchOf(batch).size() * size;
+  constexpr std::size_t size = ScalarBricks::kVoxels;
+  const std::size_t values = sizeOf(batch) * size;
   Classified result{.extinctions = std::vector<float>(values), .colors = std::vector<std::uint32_t>(values)};
-  tbb::parallel_for(std::size_t(0), batchOf(batch).size(), [&](std::size_t i) {
+  tbb::parallel_for(std::size_t(0), sizeOf(batch), [&](std::size_t i) {
     classifier_.classifyBrick(batch * bricksPerBatch_ + i, std::span(result.extinctions).subspan(i * size, size),
                               std::span(result.colors).subspan(i * size, size));
   });
@@ -87,16 +84,19 @@ void DeviceBricks::uploadClassified(std::size_t batch) {
 void DeviceBricks::upload(std::size_t batch) {
   if (uploaded_ == batch) return;
   uploaded_ = batch;
-  const std::span<const Brick> bricks = batchOf(batch);
+  const std::size_t first = batch * bricksPerBatch_, count = sizeOf(batch);
   std::vector<glm::ivec3> places;
-  for (std::size_t i = 0; i < bricks.size(); ++i)
-    places.push_back(bricks_.firstVoxel(batch * bricksPerBatch_ + i));
+  for (std::size_t i = 0; i < count; ++i) places.push_back(bricks_.firstVoxel(first + i));
   if (classification_.transferFunction)
     uploadClassified(batch);
   else
-    freevoxels::upload(device_, scalars_, std::as_bytes(bricks));
+    freevoxels::upload(device_, scalars_, count * sizeof(Brick), [&](std::span<std::byte> piece, VkDeviceSize begin) {
+      const std::span<Brick> bricks(reinterpret_cast<Brick*>(piece.data()), piece.size() / sizeof(Brick));
+      tbb::parallel_for(std::size_t(0), bricks.size(),
+                        [&](std::size_t i) { bricks[i] = bricks_.brick(first + begin / sizeof(Brick) + i); });
+    });
   freevoxels::upload(device_, firstVoxels_, std::as_bytes(std::span(places)));
-  brickCount_ = std::uint32_t(bricks.size());
+  brickCount_ = std::uint32_t(count);
   if (target_.hasEmission())
     uploadPacked(emissions_, batch, [this](glm::ivec3 voxel) {
       return packLight(classifier_.at(voxel).emission / target_.emissionUnit);

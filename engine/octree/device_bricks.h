@@ -37,7 +37,8 @@ class DeviceBricks {
   const Buffer& firstVoxels() const { return firstVoxels_; }
 
  private:
-  std::span<const ScalarBricks::Brick> batchOf(std::size_t batch) const;
+  /// How many bricks a batch has.
+  std::size_t sizeOf(std::size_t batch) const;
   /// Extinctions and packed colours of the voxels of a batch.
   struct Classified {
     std::vector<float> extinctions;

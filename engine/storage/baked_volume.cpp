@@ -56,9 +56,9 @@ bool copyBrick(const ScalarBricks& scalars, glm::ivec3 first, float* values) {
   constexpr int n = ScalarBricks::kEdge;
   const glm::ivec3 end = glm::min(scalars.dimensions() - first, n);
   if (scalars.corner() == glm::ivec3(0) && end == glm::ivec3(n)) {
-    const ScalarBricks::Brick* const brick = scalars.brickAt(first / n);
-    if (brick != nullptr) std::ranges::copy(*brick, values);
-    return brick != nullptr;
+    const std::optional<std::size_t> brick = scalars.numberAt(first / n);
+    if (brick) std::ranges::copy(scalars.brick(*brick), values);
+    return brick.has_value();
   }
   bool any = false;
   for (glm::ivec3 v(0); v.z < end.z; ++v.z)
@@ -192,7 +192,7 @@ void encodeInTurn(std::span<const glm::ivec3> cells, const ChunkSource& chunk, c
 std::vector<glm::ivec3> occupiedChunks(const Volume& volume) {
   SparseGrid<std::uint8_t> chunks((volume.dimensions + fvx::kChunkEdge - 1) / fvx::kChunkEdge);
   const auto add = [&](const ScalarBricks& values) {
-    for (std::size_t brick = 0; brick < values.bricks().size(); ++brick) {
+    for (std::size_t brick = 0; brick < values.count(); ++brick) {
       const glm::ivec3 place = values.firstVoxel(brick);
       const glm::ivec3 low = glm::max(place, 0) / fvx::kChunkEdge;
       const glm::ivec3 high = glm::min(place + ScalarBricks::kEdge - 1, volume.dimensions - 1) / fvx::kChunkEdge;

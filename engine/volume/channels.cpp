@@ -5,11 +5,14 @@
 #include <algorithm>
 #include <charconv>
 #include <cmath>
+#include <optional>
+#include <span>
 
 #include "engine/core/error.h"
 #include "engine/core/parameter.h"
 #include "engine/volume/histogram.h"
 #include "engine/volume/transfer_source.h"
+#include "engine/volume/value_range.h"
 
 namespace freevoxels {
 
@@ -19,13 +22,12 @@ namespace {
 std::array<float, 2> automaticWindow(const ScalarBricks& values) {
   constexpr int kBins = 4096;
   constexpr double kBrighter = 0.001;  // part of the voxels
-  Volume channel{.dimensions = values.dimensions(), .scalars = values};
-  summariseValues(channel);
-  if (!(channel.minimum < channel.maximum)) return {std::min(channel.minimum, 0.0f), channel.maximum};
-  const Histogram histogram = histogramOf(channel, kBins);
-  const auto active = double(channel.activeVoxels);
+  const auto [minimum, maximum] = rangeOf(values);
+  if (!(minimum < maximum)) return {std::min(minimum, 0.0f), maximum};
+  const Histogram histogram = histogramOf(values, minimum, maximum, kBins);
+  const auto active = double(histogram.count());
   const std::size_t bin = histogram.binOfRank(active - std::floor(kBrighter * active)) + 1;
-  return {channel.minimum, std::lerp(channel.minimum, channel.maximum, float(bin) / float(kBins))};
+  return {minimum, std::lerp(minimum, maximum, float(bin) / float(kBins))};
 }
 
 /// A channel as it adds to the sums.
@@ -42,7 +44,7 @@ struct Part {
   std::vector<Amount> amounts;  ///< over the window: at its ends only, or with a transfer function at the ends of kIntervals
 
   Amount at(float scalar) const {
-    if (scalar == kInactiveVoxel || !(window[0] < window[1])) return {};
+    if (scalar == kInactiveVoxel || std::isnan(scalar) || !(window[0] < window[1])) return {};
     const float place = std::clamp((scalar - window[0]) / (window[1] - window[0]), 0.0f, 1.0f) * float(amounts.size() - 1);
     const std::size_t before = std::min(std::size_t(place), amounts.size() - 2);
     const float after = place - float(before);
@@ -63,7 +65,7 @@ Part partOf(const ChannelStyle& style, std::size_t place, const ScalarBricks& va
     window = automaticWindow(values);
   Part part{&values, window, {}};
   if (!(window[0] < window[1])) return part;
-  Volume channel{.dimensions = values.dimensions(), .indexToWorld = indexToWorld, .scalars = values};
+  const Volume channel{.dimensions = values.dimensions(), .indexToWorld = indexToWorld};
   const Classification classification{.transferFunction =
                                           fitted(curves, channel, {.window = ValueWindow{double(window[0]), double(window[1])}})};
   std::vector<ClassifiedVoxel> entries;
@@ -80,21 +82,25 @@ Part partOf(const ChannelStyle& style, std::size_t place, const ScalarBricks& va
 /// Adds up the amounts of channels, whose box `sums` has, and makes the means of their colours.
 void sumUp(const std::vector<Part>& parts, ScalarBricks& sums, std::array<ScalarBricks, 3>& colors) {
   for (const Part& part : parts)
-    for (std::size_t brick = 0; brick < part.values->bricks().size(); ++brick) sums.makeBrick(part.values->cell(brick));
+    for (std::size_t brick = 0; brick < part.values->count(); ++brick) sums.makeBrick(part.values->cell(brick));
   colors.fill(sums);
-  tbb::parallel_for(std::size_t(0), sums.bricks().size(), [&](std::size_t brick) {
-    std::vector<const ScalarBricks::Brick*> of;
-    for (const Part& part : parts) of.push_back(part.values->brickAt(sums.cell(brick)));
-    for (std::size_t voxel = 0; voxel < sums.bricks()[brick].size(); ++voxel) {
+  const std::span<ScalarBricks::Brick> sumBricks = sums.editable();
+  std::array<std::span<ScalarBricks::Brick>, 3> colorBricks;
+  for (std::size_t c = 0; c < 3; ++c) colorBricks[c] = colors[c].editable();
+  tbb::parallel_for(std::size_t(0), sumBricks.size(), [&](std::size_t brick) {
+    std::vector<std::optional<ScalarBricks::Brick>> of(parts.size());
+    for (std::size_t i = 0; i < parts.size(); ++i)
+      if (const auto number = parts[i].values->numberAt(sums.cell(brick))) of[i] = parts[i].values->brick(*number);
+    for (std::size_t voxel = 0; voxel < ScalarBricks::kVoxels; ++voxel) {
       float sum = 0.0f;
       glm::vec3 color(0.0f);
       for (std::size_t i = 0; i < parts.size(); ++i) {
-        const Part::Amount part = of[i] == nullptr ? Part::Amount() : parts[i].at((*of[i])[voxel]);
+        const Part::Amount part = of[i] ? parts[i].at((*of[i])[voxel]) : Part::Amount();
         sum += part.amount;
         color += part.amount * part.color;
       }
-      sums.bricks()[brick][voxel] = sum > 0.0f ? sum : kInactiveVoxel;
-      for (int c = 0; c < 3; ++c) colors[std::size_t(c)].bricks()[brick][voxel] = sum > 0.0f ? color[c] / sum : kInactiveVoxel;
+      sumBricks[brick][voxel] = sum > 0.0f ? sum : kInactiveVoxel;
+      for (int c = 0; c < 3; ++c) colorBricks[std::size_t(c)][brick][voxel] = sum > 0.0f ? color[c] / sum : kInactiveVoxel;
     }
   });
 }

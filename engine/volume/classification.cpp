@@ -45,12 +45,11 @@ ClassifiedVoxel classifyByTransfer(const TransferFunction& transfer, float scala
 double totalDensity(const Volume& volume) {
   using Range = tbb::blocked_range<std::size_t>;
   constexpr std::size_t kGrain = 32;
-  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
   return tbb::parallel_deterministic_reduce(
-      Range(0, bricks.size(), kGrain), 0.0,
+      Range(0, volume.scalars.count(), kGrain), 0.0,
       [&](const Range& range, double sum) {
         for (std::size_t i = range.begin(); i != range.end(); ++i)
-          for (const float scalar : bricks[i]) sum += std::max(scalar, 0.0f);
+          for (const float scalar : volume.scalars.brick(i)) sum += std::max(scalar, 0.0f);
         return sum;
       },
       std::plus<>());
@@ -70,13 +69,15 @@ LightSums totalLight(const Volume& volume, const Classification& classification,
   constexpr std::size_t kGrain = 32;
   const ScalarBricks& temperatures = volume.temperature->values;
   return tbb::parallel_deterministic_reduce(
-      Range(0, temperatures.bricks().size(), kGrain), LightSums{},
+      Range(0, temperatures.count(), kGrain), LightSums{},
       [&](const Range& range, LightSums sum) {
         for (std::size_t i = range.begin(); i != range.end(); ++i) {
-          const ScalarBricks::Brick* scalars = volume.scalars.brickAt(temperatures.cell(i));
-          for (std::size_t voxel = 0; voxel < temperatures.bricks()[i].size(); ++voxel) {
+          const ScalarBricks::Brick values = temperatures.brick(i);
+          std::optional<ScalarBricks::Brick> scalars;
+          if (const auto brick = volume.scalars.numberAt(temperatures.cell(i))) scalars = volume.scalars.brick(*brick);
+          for (std::size_t voxel = 0; voxel < ScalarBricks::kVoxels; ++voxel) {
             const glm::ivec3 place = temperatures.firstVoxel(i) + ScalarBricks::placeInBrick(voxel);
-            const glm::dvec3 sent = emittedLight(emission, volume, place, temperatures.bricks()[i][voxel]);
+            const glm::dvec3 sent = emittedLight(emission, volume, place, values[voxel]);
             // A channel of light is as bright in blue as in green.
             const double light = volume.temperature->isRadiance ? std::max({sent.r, sent.g, sent.b}) : glm::dot(sent, kLuminance);
             if (light == 0.0) continue;

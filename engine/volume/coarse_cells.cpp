@@ -28,7 +28,7 @@ struct Range {
 /// of cells. The range of a cell includes `below` and `above` more voxels at its lower and upper sides.
 void addBrick(std::vector<Range>& ranges, glm::ivec2 cells, const ScalarBricks& scalars, std::size_t number, glm::ivec2 planes, int edge,
               int below, int above) {
-  const ScalarBricks::Brick& brick = scalars.bricks()[number];
+  const ScalarBricks::Brick brick = scalars.brick(number);
   const glm::ivec3 place = scalars.firstVoxel(number);
   const glm::ivec3 begin = glm::max(-place, 0), end = glm::min(scalars.dimensions() - place, ScalarBricks::kEdge);
   // The cells of which voxel v is a part.

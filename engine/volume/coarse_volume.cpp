@@ -26,7 +26,7 @@ std::vector<CoarseBrick> coarseBricksOf(const ScalarBricks& fine, const ScalarBr
   const auto cellOf = [&](glm::ivec3 voxel) { return glm::clamp(voxel, glm::ivec3(0), fine.dimensions() - 1) / factor / n; };
   SparseGrid<std::uint32_t> numbers(coarse.cells());  // in `parts`, from 1
   std::vector<CoarseBrick> parts;
-  for (std::size_t brick = 0; brick < fine.bricks().size(); ++brick) {
+  for (std::size_t brick = 0; brick < fine.count(); ++brick) {
     const glm::ivec3 low = cellOf(fine.firstVoxel(brick)), high = cellOf(fine.firstVoxel(brick) + (n - 1));
     for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
       for (cell.y = low.y; cell.y <= high.y; ++cell.y)
@@ -54,7 +54,7 @@ void fillCoarse(ScalarBricks::Brick& means, const CoarseBrick& part, const Scala
     for (glm::ivec3 v(0, 0, low.z); v.z < high.z; ++v.z)
       for (v.y = low.y; v.y < high.y; ++v.y)
         for (v.x = low.x; v.x < high.x; ++v.x)
-          if (const float scalar = fine.bricks()[brick][ScalarBricks::indexInBrick(v)]; scalar != kInactiveVoxel) {
+          if (const float scalar = fine.scalarAt(brick, ScalarBricks::indexInBrick(v)); scalar != kInactiveVoxel) {
             const std::size_t to = ScalarBricks::indexInBrick((place + v - begin) / factor);
             sums[to] += withoutData == WithoutData::Zero ? std::max(scalar, 0.0f) : scalar;
             held[to] += 1.0;
@@ -101,11 +101,11 @@ ScalarBricks clippedBricks(const ScalarBricks& all, const VoxelDistance& distanc
   ScalarBricks kept(all.dimensions(), all.corner());
   const glm::dvec3 half = glm::dvec3(0.5 * (n - 1));
   const double reach = glm::dot(glm::abs(distance.step), half);
-  for (std::size_t i = 0; i < all.bricks().size(); ++i) {
+  for (std::size_t i = 0; i < all.count(); ++i) {
     const glm::ivec3 first = all.firstVoxel(i);
     const double middle = distance.at(glm::dvec3(first) + half);
     if (middle - reach > 0.0) continue;
-    ScalarBricks::Brick& brick = kept.makeBrick(all.cell(i)) = all.bricks()[i];
+    ScalarBricks::Brick& brick = kept.makeBrick(all.cell(i)) = all.brick(i);
     if (middle + reach <= 0.0) continue;
     for (glm::ivec3 v(0); v.z < n; ++v.z)
       for (v.y = 0; v.y < n; ++v.y)

@@ -4,6 +4,8 @@
 
 #include <algorithm>
 #include <array>
+#include <ranges>
+#include <span>
 #include <utility>
 
 #include "engine/core/error.h"
@@ -17,9 +19,9 @@ constexpr std::size_t kOpacity = 3;
 
 /// Whether all voxels have the same value.
 bool isUniform(const ScalarBricks& values) {
-  const float first = values.bricks().front()[ScalarBricks::indexInBrick(glm::ivec3(0))];
-  return std::ranges::all_of(values.bricks(), [&](const ScalarBricks::Brick& brick) {
-    return std::ranges::all_of(brick, [&](float value) { return value == first || value == kInactiveVoxel; });
+  const float first = values.scalarAt(0, 0);
+  return std::ranges::all_of(std::views::iota(std::size_t(0), values.count()), [&](std::size_t brick) {
+    return std::ranges::all_of(values.brick(brick), [&](float value) { return value == first || value == kInactiveVoxel; });
   });
 }
 
@@ -32,13 +34,16 @@ void showColors(Volume& volume, std::vector<ScalarBricks> components, SampleType
   ScalarBricks densities = hasOpacity ? std::move(components[kOpacity]) : components[0];
   AlbedoGrid colors{.name = kColorsName, .values = {}};
   for (std::size_t c = 0; c < colors.values.size(); ++c) colors.values[c] = std::move(components[c]);
-  tbb::parallel_for(std::size_t(0), densities.bricks().size(), [&](std::size_t brick) {
-    for (std::size_t voxel = 0; voxel < densities.bricks()[brick].size(); ++voxel) {
-      float& density = densities.bricks()[brick][voxel];
+  std::array<std::span<ScalarBricks::Brick>, 3> colorBricks;
+  for (std::size_t c = 0; c < 3; ++c) colorBricks[c] = colors.values[c].editable();
+  const std::span<ScalarBricks::Brick> bricks = densities.editable();
+  tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t brick) {
+    for (std::size_t voxel = 0; voxel < bricks[brick].size(); ++voxel) {
+      float& density = bricks[brick][voxel];
       if (density == kInactiveVoxel) continue;
       glm::vec3 color;
       for (int c = 0; c < 3; ++c) {
-        float& value = colors.values[std::size_t(c)].bricks()[brick][voxel];
+        float& value = colorBricks[std::size_t(c)][brick][voxel];
         value = isSrgb ? linearFromSrgb(value / largest) : value / largest;
         color[c] = value;
       }

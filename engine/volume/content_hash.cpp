@@ -43,7 +43,7 @@ void addBricks(Hash& hash, const ScalarBricks& bricks) {
   hash.add(bricks.corner());
   for (const std::size_t brick : bricks.inOrder()) {
     hash.add(bricks.cell(brick));
-    hash.add(std::span<const float>(bricks.bricks()[brick]));
+    hash.add(std::span<const float>(bricks.brick(brick)));
   }
 }
 

@@ -4,8 +4,11 @@
 #include <tbb/parallel_reduce.h>
 
 #include <algorithm>
+#include <cmath>
 #include <functional>
 #include <numeric>
+#include <span>
+#include <utility>
 
 #include "engine/core/error.h"
 
@@ -47,21 +50,30 @@ std::size_t Histogram::binOfRank(double rank) const {
 }
 
 Histogram histogramOf(const Volume& volume, int bins) {
+  return histogramOf(volume.scalars, volume.minimum, volume.maximum, bins);
+}
+
+Histogram histogramOf(const ScalarBricks& scalars, float minimum, float maximum, int bins) {
   FV_CHECK_LT(0, bins);
   using Range = tbb::blocked_range<std::size_t>;
   constexpr std::size_t kGrain = 64;
-  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
-  const double minimum = volume.minimum, maximum = volume.maximum;
-  Counts counts = tbb::parallel_reduce(
-      Range(0, bricks.size(), kGrain), Counts(std::size_t(bins)),
-      [&](const Range& range, Counts partial) {
-        for (std::size_t i = range.begin(); i != range.end(); ++i)
-          for (const float scalar : bricks[i])
-            if (scalar != kInactiveVoxel) ++partial[binOf(scalar, minimum, maximum, partial.size())];
-        return partial;
-      },
-      sum);
-  return {volume.minimum, volume.maximum, std::move(counts)};
+  const auto add = [&](Counts& counts, float scalar, std::uint64_t voxels) {
+    if (scalar != kInactiveVoxel && std::isfinite(scalar)) counts[binOf(scalar, minimum, maximum, counts.size())] += voxels;
+  };
+  Counts counts((std::size_t(bins)));
+  if (const std::span<const float> values = scalars.values(); !values.empty()) {
+    const std::vector<std::uint64_t> voxels = scalars.codeCounts();
+    for (std::size_t code = 0; code < voxels.size(); ++code)
+      if (voxels[code] > 0) add(counts, values[code], voxels[code]);
+  } else {
+    const auto addBricks = [&](const Range& range, Counts partial) {
+      for (std::size_t i = range.begin(); i != range.end(); ++i)
+        for (const float scalar : scalars.brick(i)) add(partial, scalar, 1);
+      return partial;
+    };
+    counts = tbb::parallel_reduce(Range(0, scalars.count(), kGrain), std::move(counts), addBricks, sum);
+  }
+  return {minimum, maximum, std::move(counts)};
 }
 
 }  // namespace freevoxels

@@ -24,5 +24,7 @@ struct Histogram {
 /// The histogram of the active voxels, with at least 1 bin. The result does not depend on the number of
 /// threads. All voxels of a uniform volume are in the first bin.
 Histogram histogramOf(const Volume& volume, int bins);
+/// The same of scalars whose smallest and largest are known.
+Histogram histogramOf(const ScalarBricks& scalars, float minimum, float maximum, int bins);
 
 }  // namespace freevoxels

@@ -105,8 +105,9 @@ class Neighbourhood {
 void makeBricksAround(ScalarBricks& bricks, const ScalarBricks& values, std::size_t brick, const Labels& labels) {
   constexpr int kEdge = ScalarBricks::kEdge;
   glm::ivec3 low(kEdge), high(-1);  // of the voxels with labels that are shown
-  for (std::size_t i = 0; i < values.bricks()[brick].size(); ++i) {
-    const float value = values.bricks()[brick][i];
+  const ScalarBricks::Brick scalars = values.brick(brick);
+  for (std::size_t i = 0; i < scalars.size(); ++i) {
+    const float value = scalars[i];
     if (value == kInactiveVoxel || !labels.shows(labelOf(value))) continue;
     low = glm::min(low, ScalarBricks::placeInBrick(i));
     high = glm::max(high, ScalarBricks::placeInBrick(i));
@@ -137,17 +138,20 @@ std::int64_t labelOf(float scalar) {
 void showLabels(Volume& volume, const Labels& labels) {
   const ScalarBricks values = std::exchange(volume.scalars, {});
   ScalarBricks densities(volume.dimensions, values.corner());
-  for (std::size_t brick = 0; brick < values.bricks().size(); ++brick) makeBricksAround(densities, values, brick, labels);
+  for (std::size_t brick = 0; brick < values.count(); ++brick) makeBricksAround(densities, values, brick, labels);
   AlbedoGrid colors{.name = "labels", .values = {}};
   colors.values.fill(densities);
-  tbb::parallel_for(std::size_t(0), densities.bricks().size(), [&](std::size_t brick) {
+  std::array<std::span<ScalarBricks::Brick>, 3> colorBricks;
+  for (std::size_t c = 0; c < 3; ++c) colorBricks[c] = colors.values[c].editable();
+  const std::span<ScalarBricks::Brick> bricks = densities.editable();
+  tbb::parallel_for(std::size_t(0), bricks.size(), [&](std::size_t brick) {
     const glm::ivec3 first = densities.firstVoxel(brick);
     const Neighbourhood there(values, first, labels);
-    for (std::size_t i = 0; i < densities.bricks()[brick].size(); ++i) {
+    for (std::size_t i = 0; i < bricks[brick].size(); ++i) {
       const glm::ivec3 place = ScalarBricks::placeInBrick(i);
       const Look look = isInBox(first + place, volume.dimensions) ? there.at(place) : Look();
-      densities.bricks()[brick][i] = look.density;
-      for (int c = 0; c < 3; ++c) colors.values[std::size_t(c)].bricks()[brick][i] = look.color[c];
+      bricks[brick][i] = look.density;
+      for (int c = 0; c < 3; ++c) colorBricks[std::size_t(c)][brick][i] = look.color[c];
     }
   });
   volume.scalars = std::move(densities);

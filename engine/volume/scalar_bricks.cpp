@@ -1,6 +1,11 @@
 #include "engine/volume/scalar_bricks.h"
 
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
+#include <tbb/parallel_reduce.h>
+
 #include <algorithm>
+#include <functional>
 #include <numeric>
 #include <tuple>
 #include <utility>
@@ -27,6 +32,19 @@ ScalarBricks ScalarBricks::of(glm::ivec3 dimensions, std::vector<glm::ivec3> cel
   result.bricks_ = std::move(bricks);
   return result;
 }
+
+template <typename Code>
+ScalarBricks ScalarBricks::ofCodes(glm::ivec3 dimensions, std::vector<glm::ivec3> cells, BricksOf<Code> bricks, std::vector<float> values) {
+  FV_CHECK_EQ(cells.size(), bricks.size());
+  FV_CHECK_EQ(values.size(), std::size_t(1) << 8 * sizeof(Code));
+  ScalarBricks result(dimensions);
+  result.number(std::move(cells));
+  result.bricks_ = std::move(bricks);
+  result.values_ = std::move(values);
+  return result;
+}
+template ScalarBricks ScalarBricks::ofCodes(glm::ivec3, std::vector<glm::ivec3>, BricksOf<std::uint8_t>, std::vector<float>);
+template ScalarBricks ScalarBricks::ofCodes(glm::ivec3, std::vector<glm::ivec3>, BricksOf<std::uint16_t>, std::vector<float>);
 
 void ScalarBricks::checkCell(glm::ivec3 cell) const {
   for (int axis = 0; axis < 3; ++axis) {
@@ -55,53 +73,96 @@ std::vector<std::size_t> ScalarBricks::inOrder() const {
 
 void ScalarBricks::reserve(std::size_t bricks) {
   cells_.reserve(bricks);
-  bricks_.reserve(bricks);
+  if (Bricks* const floats = std::get_if<Bricks>(&bricks_)) floats->reserve(bricks);
 }
 
 ScalarBricks::Brick& ScalarBricks::makeBrick(glm::ivec3 cell) {
   checkCell(cell);
+  editable();
+  Bricks& bricks = std::get<Bricks>(bricks_);
   std::int32_t& number = numbers_[cell];
   if (number < 0) {
-    FV_CHECK_LT(bricks_.size(), kMaxBricks);
-    number = std::int32_t(bricks_.size());
+    FV_CHECK_LT(bricks.size(), kMaxBricks);
+    number = std::int32_t(bricks.size());
     cells_.push_back(cell);
-    bricks_.emplace_back().fill(kInactiveVoxel);
+    bricks.emplace_back().fill(kInactiveVoxel);
   }
-  return bricks_[std::size_t(number)];
+  return bricks[std::size_t(number)];
+}
+
+ScalarBricks::Brick ScalarBricks::brick(std::size_t number) const {
+  Brick scalars;
+  mapBrick(
+      number, std::span<float>(scalars), [](float scalar) { return scalar; }, std::span<const float>(values_));
+  return scalars;
+}
+
+std::span<ScalarBricks::Brick> ScalarBricks::editable() {
+  if (!std::holds_alternative<Bricks>(bricks_)) {
+    Bricks floats(count());
+    tbb::parallel_for(std::size_t(0), count(), [&](std::size_t i) { floats[i] = brick(i); });
+    bricks_ = std::move(floats);
+    values_.clear();
+  }
+  return std::get<Bricks>(bricks_);
+}
+
+float ScalarBricks::decoded(std::size_t number, std::size_t indexInBrick) const {
+  if (const auto* const bytes = std::get_if<BricksOf<std::uint8_t>>(&bricks_)) return values_[(*bytes)[number][indexInBrick]];
+  return values_[std::get<BricksOf<std::uint16_t>>(bricks_)[number][indexInBrick]];
+}
+
+std::vector<std::uint64_t> ScalarBricks::codeCounts() const {
+  using Counts = std::vector<std::uint64_t>;
+  constexpr std::size_t kGrain = 4096;  // bricks, as many voxels as there are codes and more
+  return std::visit(
+      [&](const auto& bricks) {
+        const auto count = [&](const tbb::blocked_range<std::size_t>& range, Counts counts) {
+          if constexpr (!std::is_same_v<decltype(bricks), const Bricks&>)
+            for (std::size_t i = range.begin(); i != range.end(); ++i) {
+              for (const auto code : bricks[i]) ++counts[code];
+              forEachBeyond(i, [&](std::size_t voxel) { --counts[bricks[i][voxel]]; });
+            }
+          return counts;
+        };
+        const auto sum = [](Counts a, const Counts& b) {
+          std::ranges::transform(a, b, a.begin(), std::plus());
+          return a;
+        };
+        return tbb::parallel_reduce(tbb::blocked_range<std::size_t>(0, bricks.size(), kGrain), Counts(values_.size()), count, sum);
+      },
+      bricks_);
+}
+
+std::uint64_t ScalarBricks::bytes() const {
+  const std::size_t bytesOfVoxel = std::visit([](const auto& bricks) { return sizeof(bricks.front().front()); }, bricks_);
+  return bytesOf(count(), bytesOfVoxel) + numbers_.bytes() + values_.size() * sizeof(float);
 }
 
 ScalarBricks ScalarBricks::cropped(glm::ivec3 low, glm::ivec3 high) const {
   const glm::ivec3 place = low + corner_;
   ScalarBricks result(high - low + 1, place % kEdge);
-  result.reserve(bricks().size());
-  for (std::size_t i = 0; i < bricks().size(); ++i) {
+  std::vector<std::size_t> kept;
+  std::vector<glm::ivec3> cells;
+  for (std::size_t i = 0; i < count(); ++i) {
     const glm::ivec3 cell = cells_[i] - place / kEdge;
     if (glm::any(glm::lessThan(cell, glm::ivec3(0))) || glm::any(glm::greaterThanEqual(cell, result.cells()))) continue;
-    Brick& brick = result.makeBrick(cell);
-    brick = bricks()[i];
-    const glm::ivec3 first = cell * kEdge - result.corner_;  // of the brick, in the new box
-    const glm::ivec3 begin = glm::max(-first, glm::ivec3(0)), end = glm::min(result.dimensions_ - first, glm::ivec3(kEdge));
-    if (begin == glm::ivec3(0) && end == glm::ivec3(kEdge)) continue;
-    for (glm::ivec3 v(0); v.z < kEdge; ++v.z)
-      for (v.y = 0; v.y < kEdge; ++v.y)
-        for (v.x = 0; v.x < kEdge; ++v.x)
-          if (glm::any(glm::lessThan(v, begin)) || glm::any(glm::greaterThanEqual(v, end))) brick[indexInBrick(v)] = kInactiveVoxel;
+    kept.push_back(i);
+    cells.push_back(cell);
   }
+  result.number(std::move(cells));
+  result.values_ = values_;
+  std::visit(
+      [&]<typename All>(const All& all) {
+        All& bricks = result.bricks_.emplace<All>();
+        bricks.reserve(kept.size());
+        for (const std::size_t i : kept) bricks.push_back(all[i]);
+        if constexpr (std::is_same_v<All, Bricks>)
+          for (std::size_t i = 0; i < bricks.size(); ++i)
+            result.forEachBeyond(i, [&](std::size_t voxel) { bricks[i][voxel] = kInactiveVoxel; });
+      },
+      bricks_);
   return result;
-}
-
-void ScalarBricks::copyRow(int y, int z, std::span<float> row) const {
-  const glm::ivec3 place(0, y + corner_.y, z + corner_.z);
-  for (int cell = 0; cell < cells().x; ++cell) {
-    const int begin = std::max(cell * kEdge - corner_.x, 0), end = std::min((cell + 1) * kEdge - corner_.x, dimensions_.x);
-    const Brick* const brick = brickAt({cell, place.y / kEdge, place.z / kEdge});
-    if (brick == nullptr) {
-      std::fill(row.begin() + begin, row.begin() + end, kInactiveVoxel);
-      continue;
-    }
-    const glm::ivec3 first((begin + corner_.x) % kEdge, place.y % kEdge, place.z % kEdge);
-    std::copy_n(&(*brick)[indexInBrick(first)], end - begin, row.begin() + begin);
-  }
 }
 
 }  // namespace freevoxels

@@ -8,6 +8,7 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
+#include <ranges>
 #include <set>
 #include <span>
 #include <utility>
@@ -95,21 +96,26 @@ Classes classesOf(std::span<const double> weights) {
 void addValuesOnSides(const ScalarBricks& scalars, std::span<const std::size_t> column, std::vector<float>& values) {
   constexpr int n = ScalarBricks::kEdge;
   const glm::ivec3 last = scalars.dimensions() - 1, place = scalars.firstVoxel(column.front());
-  std::vector<float> row;
   for (int z = std::max(-place.z, 0); z < n && place.z + z <= last.z; ++z)
     for (int y = std::max(-place.y, 0); y < n && place.y + y <= last.y; ++y) {
-      row.clear();
-      for (const std::size_t brick : column) {
-        const int first = scalars.firstVoxel(brick).x;
-        for (int x = std::max(-first, 0); x < n && first + x <= last.x; ++x)
-          if (const float value = scalars.bricks()[brick][ScalarBricks::indexInBrick({x, y, z})]; value != kInactiveVoxel)
-            row.push_back(value);
-      }
+      // Adds the value of a voxel of the row. Returns whether it is active.
+      const auto add = [&](std::size_t brick, int x) {
+        const float value = scalars.scalarAt(brick, ScalarBricks::indexInBrick({x, y, z}));
+        if (value != kInactiveVoxel) values.push_back(value);
+        return value != kInactiveVoxel;
+      };
       const bool isOnSide = place.z + z == 0 || place.z + z == last.z || place.y + y == 0 || place.y + y == last.y;
-      if (isOnSide)
-        values.insert(values.end(), row.begin(), row.end());
-      else if (!row.empty())
-        values.insert(values.end(), {row.front(), row.back()});
+      bool isFound = false;
+      for (auto brick = column.begin(); brick != column.end() && !isFound; ++brick) {
+        const int first = scalars.firstVoxel(*brick).x;
+        for (int x = std::max(-first, 0); x < n && first + x <= last.x && !isFound; ++x) isFound = add(*brick, x) && !isOnSide;
+      }
+      if (!isFound) continue;
+      isFound = false;
+      for (auto brick = column.rbegin(); brick != column.rend() && !isFound; ++brick) {
+        const int first = scalars.firstVoxel(*brick).x;
+        for (int x = std::min(n - 1, last.x - first); x >= std::max(-first, 0) && !isFound; --x) isFound = add(*brick, x);
+      }
     }
 }
 
@@ -131,12 +137,11 @@ std::vector<float> valuesOnSides(const Volume& volume) {
 /// The smallest and the largest of the values of active voxels that are not `without`.
 std::pair<float, float> rangeWithout(const Volume& volume, float without) {
   using Range = std::pair<float, float>;
-  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
   return tbb::parallel_reduce(
-      tbb::blocked_range<std::size_t>(0, bricks.size()), Range(kHuge, -kHuge),
+      tbb::blocked_range<std::size_t>(0, volume.scalars.count()), Range(kHuge, -kHuge),
       [&](const tbb::blocked_range<std::size_t>& part, Range range) {
         for (std::size_t i = part.begin(); i != part.end(); ++i)
-          for (const float value : bricks[i])
+          for (const float value : volume.scalars.brick(i))
             if (value != kInactiveVoxel && value != without) range = {std::min(range.first, value), std::max(range.second, value)};
         return range;
       },
@@ -146,12 +151,11 @@ std::pair<float, float> rangeWithout(const Volume& volume, float without) {
 /// The median of the values of active voxels that are not `without`, of a sample.
 double medianWithout(const Volume& volume, float without) {
   constexpr std::size_t kSamples = 100'000;
-  const std::span<const ScalarBricks::Brick> bricks = volume.scalars.bricks();
-  const std::size_t all = bricks.size() * std::tuple_size_v<ScalarBricks::Brick>,
+  const std::size_t all = volume.scalars.count() * ScalarBricks::kVoxels,
                     step = (all / kSamples) | 1u;  // odd: in all places of bricks
   std::vector<float> values;
   for (std::size_t i = 0; i < all; i += step) {
-    const float value = bricks[i / std::tuple_size_v<ScalarBricks::Brick>][i % std::tuple_size_v<ScalarBricks::Brick>];
+    const float value = volume.scalars.brick(i / ScalarBricks::kVoxels)[i % ScalarBricks::kVoxels];
     if (value != kInactiveVoxel && value != without) values.push_back(value);
   }
   if (values.empty()) return without;
@@ -164,8 +168,8 @@ double medianWithout(const Volume& volume, float without) {
 bool areLabels(const Volume& volume, float without) {
   constexpr std::size_t kMaxLabels = 32;
   std::set<float> found;
-  for (const ScalarBricks::Brick& brick : volume.scalars.bricks())
-    for (const float value : brick)
+  for (std::size_t i = 0; i < volume.scalars.count(); ++i)
+    for (const float value : volume.scalars.brick(i))
       if (value != kInactiveVoxel && value != without && found.insert(value).second && found.size() > kMaxLabels) return false;
   return true;
 }
@@ -269,9 +273,10 @@ bool looksLikeFog(const Volume& volume) {
   if (volume.minimum != 0.0f || !(volume.maximum > 0.0f) || double(volume.maximum) > kMaxDensity) return false;
   const std::vector<float> sides = valuesOnSides(volume);
   if (double(std::ranges::count(sides, 0.0f)) < kMinEmpty * double(sides.size())) return false;
-  return std::ranges::any_of(volume.scalars.bricks(), [](const ScalarBricks::Brick& brick) {
-    return std::ranges::any_of(brick, [](float value) { return value != kInactiveVoxel && value != std::floor(value); });
-  });
+  const auto isFraction = [](float value) { return value != kInactiveVoxel && value != std::floor(value); };
+  if (!volume.scalars.values().empty() && std::ranges::none_of(volume.scalars.values(), isFraction)) return false;
+  return std::ranges::any_of(std::views::iota(std::size_t(0), volume.scalars.count()),
+                             [&](std::size_t brick) { return std::ranges::any_of(volume.scalars.brick(brick), isFraction); });
 }
 
 void orientScan(Volume& volume) {

@@ -10,6 +10,7 @@
 #include "engine/core/error.h"
 #include "engine/core/printable.h"
 #include "engine/volume/histogram.h"
+#include "engine/volume/value_range.h"
 
 namespace freevoxels {
 
@@ -95,15 +96,15 @@ ChosenChannels chosenChannels(const fs::path& file, ScanHeader& header, const Sc
 std::optional<std::array<float, 2>> windowAboveBackground(const ScalarBricks& values) {
   constexpr int kBins = 4096;
   constexpr double kTail = 0.001, kMaxAbove = 0.5;  // parts of the voxels
-  Volume channel{.dimensions = values.dimensions(), .scalars = values};
-  summariseValues(channel);
-  if (!(channel.minimum < channel.maximum)) return std::nullopt;
-  const Histogram histogram = histogramOf(channel, kBins);
-  const auto binBelow = [&](double part) { return int(histogram.binOfRank(part * double(channel.activeVoxels))); };
+  const auto [minimum, maximum] = rangeOf(values);
+  if (!(minimum < maximum)) return std::nullopt;
+  const Histogram histogram = histogramOf(values, minimum, maximum, kBins);
+  const auto active = double(histogram.count());
+  const auto binBelow = [&](double part) { return int(histogram.binOfRank(part * active)); };
   const int mode = int(std::ranges::max_element(histogram.counts) - histogram.counts.begin());
   const int begin = 2 * mode - std::min(binBelow(kTail), mode) + 1, end = binBelow(1.0 - kTail) + 1;
   if (begin >= end || binBelow(1.0 - kMaxAbove) >= begin) return std::nullopt;
-  const auto valueAt = [&](int bin) { return std::lerp(channel.minimum, channel.maximum, float(bin) / float(kBins)); };
+  const auto valueAt = [&](int bin) { return std::lerp(minimum, maximum, float(bin) / float(kBins)); };
   return std::array{valueAt(begin), valueAt(end)};
 }
 

@@ -4,6 +4,7 @@
 #include <array>
 #include <cctype>
 #include <cmath>
+#include <deque>
 #include <fstream>
 #include <new>
 #include <system_error>
@@ -194,8 +195,10 @@ void checkSize(const fs::path& file, const OpenedScan& opened, std::uint64_t max
   const glm::ivec3 size = part.last - part.first + 1;
   const std::uint64_t voxels = std::uint64_t(size.x) * std::uint64_t(size.y) * std::uint64_t(size.z);
   constexpr std::size_t kSums = 4;  // of channels: densities and colours
-  const std::uint64_t boxes = channels == 0 ? 1 : channels + kSums;
-  const std::uint64_t bytes = boxes * ScalarBricks::bytesOf(voxels / std::tuple_size_v<ScalarBricks::Brick>) + opened.reader->bytesToRead();
+  const std::uint64_t bricks = voxels / ScalarBricks::kVoxels, sums = channels == 0 ? 0 : kSums;
+  const std::uint64_t bytes =
+      std::max<std::uint64_t>(channels, 1) * ScalarBricks::bytesOf(bricks, ScanVoxels::bytesOfVoxel(opened.header.type)) +
+      sums * ScalarBricks::bytesOf(bricks) + opened.reader->bytesToRead();
   if (voxels > maximumVoxels)
     fail(ErrorKind::OutOfMemory,
          "'{}' is too large: its {} x {} x {} voxels are more than the {} that are possible here; resample or crop it", file.string(),
@@ -209,8 +212,9 @@ void checkSize(const fs::path& file, const OpenedScan& opened, std::uint64_t max
 /// The scalars of the channels with these numbers; of channels that follow each other in every voxel in one pass.
 std::vector<ScalarBricks> readChannels(const OpenedScan& opened, const ScanRequest& request, const std::vector<int>& numbers) {
   const VoxelBox box = partOf(opened.header);
-  std::vector<ScanVoxels> voxels;
-  for (std::size_t i = 0; i < numbers.size(); ++i) voxels.emplace_back(box.last - box.first + 1, box.first);
+  std::deque<ScanVoxels> voxels;
+  const SampleType type = opened.reader->fillsBox() ? opened.header.type : SampleType::F32;
+  for (std::size_t i = 0; i < numbers.size(); ++i) voxels.emplace_back(type, box.last - box.first + 1, box.first);
   ScanPart part{.timeStep = request.timeStep.value_or(0), .box = box};
   if (opened.header.components > 1) {
     const auto put = [&](const SampleBlock& block) {

@@ -101,10 +101,10 @@ ScanHeader readScanHeader(const std::filesystem::path& file, const ScanRequest& 
 /// How the channels are drawn that readScan mixes, with the colours and windows of the file where the request gives none; none where a
 /// single channel is read.
 std::vector<ChannelStyle> scanChannels(const std::filesystem::path& file, const ScanRequest& request);
-/// Reads the samples as floats, in which all values of 8 and 16 bits are exact, or colours (colors.h). Up is +z, towards the head. Fails
-/// with ErrorKind::Input for a file that is missing, damaged, shorter than its header says, of vectors, or has several series of which none
-/// is chosen; with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels` or this machine's memory, before allocating it; and with
-/// ErrorKind::Usage for parts of the request that the file has no use for.
+/// Reads the samples, those of 8 and 16 bits as codes (scalar_bricks.h) and others as floats, or colours (colors.h). Up is +z, towards the
+/// head. Fails with ErrorKind::Input for a file that is missing, damaged, shorter than its header says, of vectors, or has several series
+/// of which none is chosen; with ErrorKind::OutOfMemory if the box exceeds `maximumVoxels` or this machine's memory, before allocating it;
+/// and with ErrorKind::Usage for parts of the request that the file has no use for.
 Volume readScan(const std::filesystem::path& file, const ScanRequest& request);
 
 }  // namespace freevoxels

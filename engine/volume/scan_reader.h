@@ -31,6 +31,8 @@ class ScanReader {
   virtual void read(const ScanPart& part, const SampleSink& sink, const Progress& progress) = 0;
   /// Host memory that read() needs besides the sink's.
   virtual std::uint64_t bytesToRead() const = 0;
+  /// Whether read() hands out every voxel of its part.
+  virtual bool fillsBox() const { return true; }
 
  protected:
   ScanHeader header_;

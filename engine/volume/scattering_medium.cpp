@@ -5,7 +5,9 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <span>
 #include <utility>
+#include <vector>
 
 namespace freevoxels {
 
@@ -110,10 +112,16 @@ void ScatteringMedium::add(const Volume& part, glm::ivec3 first, const Classific
   const double share = 1.0 / volumeOf(grid_.edge), directShare = 1.0 / volumeOf(directGrid_.edge);
   const bool hasGrid = part.albedo.has_value() && !classification.transferFunction;
   const bool emits = classification.emission && part.temperature;
+  const auto extinctionOf = [&](float scalar) { return table.extinctionAt(scalar); };
+  const std::vector<double> extinctionOfCode = part.scalars.mapValues<double>(extinctionOf);
   tbb::parallel_for(first.z / grid_.edge, (end.z + grid_.edge - 1) / grid_.edge, [&](int plane) {
     std::vector<float> scalars(std::size_t(part.dimensions.x)), temperatures(scalars.size());
+    std::vector<double> extinctions(scalars.size());
     for (int z = std::max(plane * grid_.edge, first.z); z < std::min((plane + 1) * grid_.edge, end.z); ++z)
       for (int y = first.y; y < end.y; ++y) {
+        part.scalars.mapRow(y - first.y, z - first.z, std::span<double>(extinctions), extinctionOf,
+                            std::span<const double>(extinctionOfCode));
+        if (!emits && std::ranges::all_of(extinctions, [](double extinction) { return extinction == 0.0; })) continue;
         part.scalars.copyRow(y - first.y, z - first.z, scalars);
         if (emits) part.temperature->values.copyRow(y - first.y, z - first.z, temperatures);
         Cell* const row = &cells_[grid_.index({0, y / grid_.edge, plane})];
@@ -124,7 +132,7 @@ void ScatteringMedium::add(const Volume& part, glm::ivec3 first, const Classific
           if (emits)
             cell.emission +=
                 share * emittedLight(*classification.emission, part, glm::ivec3(x, y, z) - first, temperatures[std::size_t(x - first.x)]);
-          const double extinction = table.extinctionAt(scalar);
+          const double extinction = extinctions[std::size_t(x - first.x)];
           if (extinction == 0.0) continue;
           const glm::dvec3 albedo =
               hasGrid ? glm::dvec3(albedoOf(classification, *part.albedo, glm::ivec3(x, y, z) - first)) : table.colorAt(scalar);

@@ -18,8 +18,8 @@ constexpr int kMuchShorter = 16;
 /// Voxels with data of each brick.
 std::vector<std::uint64_t> countsOf(const ScalarBricks& scalars) {
   std::vector<std::uint64_t> counts;
-  for (const ScalarBricks::Brick& brick : scalars.bricks())
-    counts.push_back(std::uint64_t(std::ranges::count_if(brick, [](float value) { return value != kInactiveVoxel; })));
+  for (std::size_t number = 0; number < scalars.count(); ++number)
+    counts.push_back(std::uint64_t(std::ranges::count_if(scalars.brick(number), [](float value) { return value != kInactiveVoxel; })));
   return counts;
 }
 

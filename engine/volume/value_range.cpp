@@ -7,6 +7,8 @@
 #include <algorithm>
 #include <bit>
 #include <cmath>
+#include <span>
+#include <vector>
 
 namespace freevoxels {
 
@@ -20,23 +22,44 @@ std::size_t magnitudeOf(float value) {
   return std::bit_cast<std::uint32_t>(std::abs(value)) >> kFractionBits;
 }
 
-/// Adds a value to the summary, or removes it from the volume if it is no number or equal to `noData`.
-void add(ValueSummary& summary, float& value, float noData) {
-  if (value == kInactiveVoxel) return;
+/// Adds the value of some voxels to the summary, or removes it from the volume if it is no number or equal to `noData`.
+void add(ValueSummary& summary, float& value, std::uint64_t voxels, float noData) {
+  if (value == kInactiveVoxel || voxels == 0) return;
   const bool isNumber = std::isfinite(value);
   if (!isNumber || value == noData) {
-    ++summary.missing;
-    if (!isNumber) ++summary.nan;
+    summary.missing += voxels;
+    if (!isNumber) summary.nan += voxels;
     value = kInactiveVoxel;
     return;
   }
-  ++summary.active;
-  if (value < 0.0f) ++summary.negative;
+  summary.active += voxels;
+  if (value < 0.0f) summary.negative += voxels;
   summary.minimum = std::min(summary.minimum, value);
   summary.maximum = std::max(summary.maximum, value);
   const std::size_t magnitude = magnitudeOf(value);
-  ++summary.counts[magnitude];
+  summary.counts[magnitude] += voxels;
   summary.largest[magnitude] = std::max(summary.largest[magnitude], std::abs(value));
+}
+
+ValueSummary sumOfCodes(std::span<float> values, const std::vector<std::uint64_t>& counts, float noData) {
+  ValueSummary summary;
+  for (std::size_t code = 0; code < counts.size(); ++code) add(summary, values[code], counts[code], noData);
+  return summary;
+}
+
+/// `brickOf(number)` returns a brick, or a copy of one.
+template <typename BrickOf>
+ValueSummary sumOfBricks(std::size_t count, const BrickOf& brickOf, float noData) {
+  const auto sum = [&](const Range& range, ValueSummary partial) {
+    for (std::size_t i = range.begin(); i < range.end(); ++i)
+      for (float& scalar : brickOf(i)) add(partial, scalar, 1, noData);
+    return partial;
+  };
+  const auto join = [](ValueSummary a, const ValueSummary& b) {
+    a.add(b);
+    return a;
+  };
+  return tbb::parallel_reduce(Range(0, count, kGrain), ValueSummary{}, sum, join);
 }
 
 }  // namespace
@@ -54,19 +77,19 @@ void ValueSummary::add(const ValueSummary& other) {
   }
 }
 
-ValueSummary summarise(std::span<ScalarBricks::Brick> bricks, std::optional<float> noData) {
+ValueSummary summarise(ScalarBricks& scalars, std::optional<float> noData) {
   const float marker = noData.value_or(kInactiveVoxel);
-  return tbb::parallel_reduce(
-      Range(0, bricks.size(), kGrain), ValueSummary{},
-      [&](const Range& range, ValueSummary partial) {
-        for (std::size_t i = range.begin(); i < range.end(); ++i)
-          for (float& scalar : bricks[i]) add(partial, scalar, marker);
-        return partial;
-      },
-      [](ValueSummary a, const ValueSummary& b) {
-        a.add(b);
-        return a;
-      });
+  if (const std::span<float> values = scalars.values(); !values.empty()) return sumOfCodes(values, scalars.codeCounts(), marker);
+  const std::span<ScalarBricks::Brick> bricks = scalars.editable();
+  return sumOfBricks(
+      bricks.size(), [&](std::size_t i) -> ScalarBricks::Brick& { return bricks[i]; }, marker);
+}
+
+ValueSummary summaryOf(const ScalarBricks& scalars) {
+  std::vector<float> values(scalars.values().begin(), scalars.values().end());
+  if (!values.empty()) return sumOfCodes(values, scalars.codeCounts(), kInactiveVoxel);
+  return sumOfBricks(
+      scalars.count(), [&](std::size_t i) { return scalars.brick(i); }, kInactiveVoxel);
 }
 
 Outliers outliersOf(const ValueSummary& summary) {
@@ -86,11 +109,27 @@ Outliers outliersOf(const ValueSummary& summary) {
   return {};
 }
 
-void limitValues(std::span<ScalarBricks::Brick> bricks, float limit) {
+std::pair<float, float> rangeOf(const ValueSummary& summary, const Outliers& outliers) {
+  if (summary.active == 0) return {0.0f, 0.0f};
+  return {std::max(summary.minimum, -outliers.limit), std::min(summary.maximum, outliers.limit)};
+}
+
+std::pair<float, float> rangeOf(const ScalarBricks& scalars) {
+  const ValueSummary summary = summaryOf(scalars);
+  return rangeOf(summary, outliersOf(summary));
+}
+
+void limitValues(ScalarBricks& scalars, float limit) {
+  const auto limitOne = [&](float& scalar) {
+    if (scalar != kInactiveVoxel && std::abs(scalar) > limit) scalar = std::copysign(limit, scalar);
+  };
+  if (const std::span<float> values = scalars.values(); !values.empty()) {
+    std::ranges::for_each(values, limitOne);
+    return;
+  }
+  const std::span<ScalarBricks::Brick> bricks = scalars.editable();
   tbb::parallel_for(Range(0, bricks.size(), kGrain), [&](const Range& range) {
-    for (std::size_t i = range.begin(); i < range.end(); ++i)
-      for (float& scalar : bricks[i])
-        if (scalar != kInactiveVoxel && std::abs(scalar) > limit) scalar = std::copysign(limit, scalar);
+    for (std::size_t i = range.begin(); i < range.end(); ++i) std::ranges::for_each(bricks[i], limitOne);
   });
 }
 

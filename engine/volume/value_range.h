@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <limits>
 #include <optional>
-#include <span>
+#include <utility>
 
 #include "engine/volume/scalar_bricks.h"
 
@@ -25,7 +25,9 @@ struct ValueSummary {
 };
 
 /// Sums up the active voxels. Those that are NaN or infinite, or have the value of no data, become voxels without data.
-ValueSummary summarise(std::span<ScalarBricks::Brick> bricks, std::optional<float> noData = {});
+ValueSummary summarise(ScalarBricks& scalars, std::optional<float> noData = {});
+/// The same, of scalars that stay as they are.
+ValueSummary summaryOf(const ScalarBricks& scalars);
 
 /// Values that stray from all others: at most a thousandth of the voxels and kMaxOutliers, with absolute values more than 1024 times
 /// as large as the largest of the rest.
@@ -35,8 +37,11 @@ struct Outliers {
 };
 inline constexpr std::uint64_t kMaxOutliers = 100;
 Outliers outliersOf(const ValueSummary& summary);
+/// The smallest and the largest value, with outliers limited; 0 without active voxels.
+std::pair<float, float> rangeOf(const ValueSummary& summary, const Outliers& outliers);
+std::pair<float, float> rangeOf(const ScalarBricks& scalars);
 
 /// Limits the absolute values of active voxels.
-void limitValues(std::span<ScalarBricks::Brick> bricks, float limit);
+void limitValues(ScalarBricks& scalars, float limit);
 
 }  // namespace freevoxels

@@ -63,7 +63,7 @@ ScalarBricks bricksOf(const openvdb::FloatTree& tree, std::vector<const VdbLeaf*
     });
   });
   std::erase_if(leaves, [&](const VdbLeaf* leaf) { return !holdsData(*leaf, toDensity); });
-  result.reserve(result.bricks().size() + leaves.size());
+  result.reserve(result.count() + leaves.size());
   std::vector<ScalarBricks::Brick*> bricks;
   for (const VdbLeaf* leaf : leaves) bricks.push_back(&result.makeBrick(brickCell(origin, leaf->origin())));
   for (std::size_t first = 0; first < leaves.size(); first += kBatch) {

@@ -125,7 +125,7 @@ void VdbParts::sumUp() {
     std::vector<ValueSummary> summaries(parts.size());
     tbb::parallel_for(std::size_t(0), parts.size(), [&](std::size_t i) {
       parts[i] = readValues(cubes[first + i], kCubeEdge);
-      summaries[i] = summarise(parts[i].scalars.bricks());
+      summaries[i] = summarise(parts[i].scalars);
     });
     for (std::size_t i = 0; i < parts.size(); ++i) {
       outline_.overflownVoxels += parts[i].overflownVoxels;

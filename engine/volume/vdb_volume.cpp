@@ -44,7 +44,7 @@ Volume boxVolume(const openvdb::math::Transform& transform, const openvdb::Coord
 
 void limitOverflow(ScalarBricks& scalars, std::uint64_t& overflown) {
   constexpr float kMaxHalf = 65504.0f;
-  for (ScalarBricks::Brick& brick : scalars.bricks())
+  for (ScalarBricks::Brick& brick : scalars.editable())
     for (float& scalar : brick)
       if (std::isinf(scalar)) {
         scalar = std::copysign(kMaxHalf, scalar);

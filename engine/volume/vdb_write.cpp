@@ -50,7 +50,7 @@ std::unique_ptr<Leaf> makeLeaf(const Volume& volume, const ScalarBricks& scalars
 std::set<Coord> leafCorners(const Volume& volume, const ScalarBricks& scalars) {
   const int mask = ~(int(Leaf::DIM) - 1);
   std::set<Coord> corners;
-  for (std::size_t brick = 0; brick < scalars.bricks().size(); ++brick) {
+  for (std::size_t brick = 0; brick < scalars.count(); ++brick) {
     const glm::ivec3 first = scalars.firstVoxel(brick) + volume.indexOrigin;
     for (int corner = 0; corner < 8; ++corner) {
       const glm::ivec3 end =

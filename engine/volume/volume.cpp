@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <tuple>
 
 #include "engine/volume/value_range.h"
 
@@ -16,8 +17,7 @@ template <typename Grid>
 void take(Grid& grid, const ValueSummary& summary, const Outliers& outliers) {
   grid.activeVoxels = summary.active;
   grid.nanVoxels += summary.nan;
-  grid.minimum = summary.active == 0 ? 0.0f : std::max(summary.minimum, -outliers.limit);
-  grid.maximum = summary.active == 0 ? 0.0f : std::min(summary.maximum, outliers.limit);
+  std::tie(grid.minimum, grid.maximum) = rangeOf(summary, outliers);
   if (outliers.voxels == 0) return;
   grid.outlierVoxels = outliers.voxels;
   grid.farthestOutlier = std::abs(summary.minimum) > std::abs(summary.maximum) ? summary.minimum : summary.maximum;
@@ -25,8 +25,8 @@ void take(Grid& grid, const ValueSummary& summary, const Outliers& outliers) {
 
 void expandByActive(const ScalarBricks& scalars, glm::ivec3& low, glm::ivec3& high) {
   constexpr int n = ScalarBricks::kEdge;
-  for (std::size_t i = 0; i < scalars.bricks().size(); ++i) {
-    const ScalarBricks::Brick& brick = scalars.bricks()[i];
+  for (std::size_t i = 0; i < scalars.count(); ++i) {
+    const ScalarBricks::Brick brick = scalars.brick(i);
     for (glm::ivec3 v(0); v.z < n; ++v.z)
       for (v.y = 0; v.y < n; ++v.y)
         for (v.x = 0; v.x < n; ++v.x)
@@ -53,7 +53,7 @@ std::vector<float> denseScalars(const Volume& volume) {
 }
 
 void coverBricks(Volume& volume, const ScalarBricks& grid) {
-  for (std::size_t i = 0; i < grid.bricks().size(); ++i) volume.scalars.makeBrick(grid.cell(i));
+  for (std::size_t i = 0; i < grid.count(); ++i) volume.scalars.makeBrick(grid.cell(i));
 }
 
 void cropToActive(Volume& volume) {
@@ -92,15 +92,15 @@ void normaliseWorld(Volume& volume) {
 }
 
 void summariseValues(Volume& volume, std::optional<float> noData) {
-  const ValueSummary summary = summarise(volume.scalars.bricks(), noData);
+  const ValueSummary summary = summarise(volume.scalars, noData);
   const Outliers outliers = outliersOf(summary);
   takeSummary(volume, summary, outliers);
-  if (outliers.voxels > 0) limitValues(volume.scalars.bricks(), outliers.limit);
+  if (outliers.voxels > 0) limitValues(volume.scalars, outliers.limit);
 }
 
 void summariseValues(Volume& volume, const Outliers& outliers) {
-  if (outliers.voxels > 0) limitValues(volume.scalars.bricks(), outliers.limit);
-  takeSummary(volume, summarise(volume.scalars.bricks()), {});
+  if (outliers.voxels > 0) limitValues(volume.scalars, outliers.limit);
+  takeSummary(volume, summarise(volume.scalars), {});
 }
 
 void takeSummary(Volume& volume, const ValueSummary& summary, const Outliers& outliers) {
@@ -120,11 +120,10 @@ void takeCounts(Volume& volume, const Volume& other) {
 }
 
 void summariseValues(TemperatureGrid& grid) {
-  const std::span<ScalarBricks::Brick> bricks = grid.values.bricks();
-  const ValueSummary summary = summarise(bricks);
+  const ValueSummary summary = summarise(grid.values);
   const Outliers outliers = outliersOf(summary);
   take(grid, summary, outliers);
-  if (outliers.voxels > 0) limitValues(bricks, outliers.limit);
+  if (outliers.voxels > 0) limitValues(grid.values, outliers.limit);
 }
 
 Volume outlineOf(const Volume& volume) {

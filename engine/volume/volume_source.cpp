@@ -20,7 +20,7 @@ ScalarBricks part(const ScalarBricks& values, const VoxelRange& box) {
       for (glm::ivec3 cell = low; cell.z <= high.z; ++cell.z)
         for (cell.y = low.y; cell.y <= high.y; ++cell.y)
           for (cell.x = low.x; cell.x <= high.x; ++cell.x)
-            if (values.brickAt(cell) != nullptr) return true;
+            if (values.numberAt(cell)) return true;
       return false;
     };
     return ScalarBricks::make(
@@ -31,7 +31,7 @@ ScalarBricks part(const ScalarBricks& values, const VoxelRange& box) {
   for (glm::ivec3 cell(0); cell.z < cells.z; ++cell.z)
     for (cell.y = 0; cell.y < cells.y; ++cell.y)
       for (cell.x = 0; cell.x < cells.x; ++cell.x)
-        if (const ScalarBricks::Brick* const brick = values.brickAt(first + cell)) result.makeBrick(cell) = *brick;
+        if (const std::optional<std::size_t> brick = values.numberAt(first + cell)) result.makeBrick(cell) = values.brick(*brick);
   return result;
 }
 
@@ -50,7 +50,7 @@ VolumeInMemory::VolumeInMemory(std::shared_ptr<const Volume> volume) : volume_(s
 SparseGrid<std::uint8_t> VolumeInMemory::bricks(int) const {
   const ScalarBricks& scalars = volume_->scalars;
   SparseGrid<std::uint8_t> cells((volume_->dimensions + kEdge - 1) / kEdge);
-  for (std::size_t brick = 0; brick < scalars.bricks().size(); ++brick) {
+  for (std::size_t brick = 0; brick < scalars.count(); ++brick) {
     // The bricks in memory may begin before the box, and then lie in several of those that begin with it.
     const glm::ivec3 begin = glm::max(scalars.firstVoxel(brick), 0), end = glm::min(scalars.firstVoxel(brick) + kEdge, volume_->dimensions);
     const glm::ivec3 low = begin / kEdge, high = (end - 1) / kEdge;

@@ -57,7 +57,9 @@ bool TransferIntegral::holdsAnythingAt(double low, double high) const {
 
 VoxelClassifier::VoxelClassifier(const Classification& classification, const Volume& volume)
     : classification_(classification), volume_(volume) {
-  if (classification.transferFunction) integral_.emplace(*classification.transferFunction, volume.minimum, volume.maximum);
+  if (!classification.transferFunction) return;
+  integral_.emplace(*classification.transferFunction, volume.minimum, volume.maximum);
+  placeOfCode_ = volume.scalars.mapValues<float>([this](float scalar) { return placeOf(scalar); });
 }
 
 /// Classifies by positions of TransferIntegral: of the voxel, and half-way to its neighbours. The colour is
@@ -127,15 +129,16 @@ void VoxelClassifier::classifyBrick(std::size_t brick, std::span<float> extincti
   // Positions of the brick's voxels and of one layer of voxels around it.
   std::array<float, std::size_t(m) * m * m> around;
   around.fill(kNoData);
-  const auto copy = [&](const ScalarBricks::Brick* from, glm::ivec3 begin, glm::ivec3 end, glm::ivec3 to) {
-    if (from == nullptr) return;
+  const auto copy = [&](std::size_t number, glm::ivec3 begin, glm::ivec3 end, glm::ivec3 to) {
+    ScalarBricks::Brick places;
+    scalars.mapBrick(
+        number, std::span<float>(places), [this](float scalar) { return placeOf(scalar); }, std::span<const float>(placeOfCode_));
     for (int z = begin.z; z < end.z; ++z)
       for (int y = begin.y; y < end.y; ++y)
         for (int x = begin.x; x < end.x; ++x)
-          around[std::size_t(x + to.x + m * (y + to.y + m * (z + to.z)))] =
-              placeOf((*from)[ScalarBricks::indexInBrick({x, y, z})]);
+          around[std::size_t(x + to.x + m * (y + to.y + m * (z + to.z)))] = places[ScalarBricks::indexInBrick({x, y, z})];
   };
-  copy(&scalars.bricks()[brick], glm::ivec3(0), glm::ivec3(n), glm::ivec3(1));
+  copy(brick, glm::ivec3(0), glm::ivec3(n), glm::ivec3(1));
   for (int axis = 0; axis < 3; ++axis)
     for (const bool up : {false, true}) {
       glm::ivec3 cell = scalars.cell(brick), begin(0), end(n), to(1);
@@ -143,7 +146,7 @@ void VoxelClassifier::classifyBrick(std::size_t brick, std::span<float> extincti
       if (cell[axis] < 0 || cell[axis] >= scalars.cells()[axis]) continue;
       (up ? end : begin)[axis] = up ? 1 : n - 1;
       to[axis] = up ? n + 1 : 1 - n;
-      copy(scalars.brickAt(cell), begin, end, to);
+      if (const auto beside = scalars.numberAt(cell)) copy(*beside, begin, end, to);
     }
   // Most bricks have no extinction at all.
   float low = std::numeric_limits<float>::max(), high = kNoData;
@@ -152,6 +155,7 @@ void VoxelClassifier::classifyBrick(std::size_t brick, std::span<float> extincti
     high = std::max(high, place);
   }
   if (low > high || !integral_->holdsAnythingAt(low, high)) return;
+  const ScalarBricks::Brick middle = scalars.brick(brick);
   for (int z = 0; z < n; ++z)
     for (int y = 0; y < n; ++y)
       for (int x = 0; x < n; ++x) {
@@ -160,7 +164,7 @@ void VoxelClassifier::classifyBrick(std::size_t brick, std::span<float> extincti
         std::array<float, 6> neighbours;
         for (std::size_t i = 0; i < 6; ++i) neighbours[i] = own[i % 2 == 0 ? -kStrides[i / 2] : kStrides[i / 2]];
         const std::size_t voxel = ScalarBricks::indexInBrick({x, y, z});
-        const ClassifiedVoxel result = withNeighbours(scalars.bricks()[brick][voxel], *own, neighbours);
+        const ClassifiedVoxel result = withNeighbours(middle[voxel], *own, neighbours);
         extinction[voxel] = float(result.extinction);
         if (result.extinction > 0.0) colors[voxel] = packColor(result.color);
       }

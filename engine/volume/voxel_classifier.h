@@ -62,6 +62,7 @@ class VoxelClassifier {
   const Classification& classification_;
   const Volume& volume_;
   std::optional<TransferIntegral> integral_;
+  std::vector<float> placeOfCode_;  ///< of the volume's scalars, with a transfer function
 };
 
 }  // namespace freevoxels

@@ -91,6 +91,7 @@ class VtiScan : public ScanReader {
     }
   }
 
+  bool fillsBox() const override { return pieces_.size() == 1; }
   std::uint64_t bytesToRead() const override { return header_.samples() * header_.bytesOfVoxel(); }
 
  private:

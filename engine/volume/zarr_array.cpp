@@ -5,8 +5,11 @@
 #include <fmt/ranges.h>
 #include <algorithm>
 #include <bit>
+#include <cmath>
 #include <cstring>
 #include <glm/gtc/packing.hpp>
+#include <limits>
+#include <type_traits>
 
 #include "engine/volume/scan_reader.h"
 
@@ -27,6 +30,16 @@ glm::ivec3 alongBox(const ZarrBox& box, const std::vector<std::uint64_t>& extent
 float halfAt(const std::byte* place, bool isBigEndian) {
   const auto low = std::uint16_t(place[isBigEndian ? 1 : 0]), high = std::uint16_t(place[isBigEndian ? 0 : 1]);
   return glm::unpackHalf1x16(std::uint16_t(low | high << 8));
+}
+
+/// Whether numbers of a type can be so.
+bool isNumberOf(SampleType type, float number) {
+  return withSampleType(type, [&](auto typed) {
+    using Value = decltype(typed);
+    if constexpr (std::is_floating_point_v<Value>) return true;
+    using Limits = std::numeric_limits<Value>;
+    return number >= float(Limits::lowest()) && number < float(Limits::max()) + 1.0f && number == std::floor(number);
+  });
 }
 
 }  // namespace
@@ -108,11 +121,14 @@ void ZarrArray::readPiece(const ZarrBox& box, const Piece& piece, const SampleSi
   SampleBlock block{.type = layout_.type, .first = piece.chunk * alongBox(box, layout_.chunk)};
   block.extent = glm::min(alongBox(box, layout_.chunk), alongBox(box, layout_.shape) - block.first);
   const std::size_t count = std::size_t(block.extent.x) * std::size_t(block.extent.y) * std::size_t(block.extent.z);
-  if (!piece.file || layout_.isHalf) block.type = SampleType::F32;
+  if (layout_.isHalf || (!piece.file && !isNumberOf(layout_.type, layout_.fill))) block.type = SampleType::F32;
   std::vector<std::byte> samples(count * bytesOf(block.type));
   block.samples = samples.data();
   if (!piece.file) {
-    for (std::size_t i = 0; i < count; ++i) std::memcpy(samples.data() + i * sizeof(float), &layout_.fill, sizeof(float));
+    withSampleType(block.type, [&](auto typed) {
+      const auto fill = decltype(typed)(layout_.fill);
+      for (std::size_t i = 0; i < count; ++i) std::memcpy(samples.data() + i * sizeof(fill), &fill, sizeof(fill));
+    });
     return sink(block);
   }
   const std::vector<std::byte> plain = bytesOfPiece(piece);

@@ -132,17 +132,21 @@ class StagingHalves {
 }  // namespace
 
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data) {
-  FV_CHECK_LE(data.size(), buffer.bytes());
-  if (data.empty()) return;
-  if (buffer.mapped() != nullptr) {
-    std::memcpy(buffer.mapped(), data.data(), data.size());
-    return;
-  }
-  StagingHalves staging(device, MemoryUse::Upload, data.size());
-  for (VkDeviceSize done = 0; done < data.size(); done += staging.pieceBytes()) {
+  upload(device, buffer, data.size(),
+         [&](std::span<std::byte> piece, VkDeviceSize first) { std::memcpy(piece.data(), data.data() + first, piece.size()); });
+}
+
+void upload(const Device& device, const Buffer& buffer, VkDeviceSize bytes,
+            const std::function<void(std::span<std::byte> piece, VkDeviceSize first)>& make) {
+  static_assert(kStagingBytes % (2 << 16) == 0);
+  FV_CHECK_LE(bytes, buffer.bytes());
+  if (bytes == 0) return;
+  if (buffer.mapped() != nullptr) return make({buffer.mapped(), bytes}, 0);
+  StagingHalves staging(device, MemoryUse::Upload, bytes);
+  for (VkDeviceSize done = 0; done < bytes; done += staging.pieceBytes()) {
     const Buffer& half = staging.next();
-    const VkDeviceSize size = std::min(staging.pieceBytes(), data.size() - done);
-    std::memcpy(half.mapped(), data.data() + done, size);
+    const VkDeviceSize size = std::min(staging.pieceBytes(), bytes - done);
+    make({half.mapped(), size}, done);
     staging.finishCopy();
     staging.beginCopy(half, buffer, {.srcOffset = 0, .dstOffset = done, .size = size});
   }

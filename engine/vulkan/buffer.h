@@ -108,6 +108,9 @@ class TexelView {
 /// Copies host data into `buffer`: directly if it is mapped, otherwise in pieces through a staging buffer.
 /// Blocks until the copy is complete.
 void upload(const Device& device, const Buffer& buffer, std::span<const std::byte> data);
+/// The same of `bytes` that `make(piece, first)` writes piece by piece, each of which begins at byte `first`, a multiple of 64 KiB.
+void upload(const Device& device, const Buffer& buffer, VkDeviceSize bytes,
+            const std::function<void(std::span<std::byte> piece, VkDeviceSize first)>& make);
 
 /// Replaces a buffer that is smaller than `bytes`, whose contents are lost, by one of MemoryUse::Device. Returns whether it did.
 bool growBuffer(const Device& device, Buffer& buffer, VkDeviceSize bytes, const char* name, VkBufferUsageFlags usage = 0);

@@ -44,8 +44,8 @@ TEST(BakedVolume, KeptScalarsTemperaturesAndAlbedosAreTheSameBits) {
     test::expectSameVoxels(baked.scalars, volume.scalars);
     test::expectSameVoxels(baked.temperature->values, volume.temperature->values);
     for (std::size_t c = 0; c < 3; ++c) test::expectSameVoxels(baked.albedo->values[c], volume.albedo->values[c]);
-    for (std::size_t brick = 0; brick < volume.temperature->values.bricks().size(); ++brick)
-      EXPECT_NE(baked.scalars.brickAt(volume.temperature->values.cell(brick)), nullptr) << "light without a brick of scalars";
+    for (std::size_t brick = 0; brick < volume.temperature->values.count(); ++brick)
+      EXPECT_TRUE(baked.scalars.numberAt(volume.temperature->values.cell(brick)).has_value()) << "light without a brick of scalars";
   }
 }
 

@@ -178,14 +178,14 @@ TEST_F(FvxValues, AlbedosBeyondTheBoxWhichEarlierVersionsStoredAreLeftOut) {
   file->checkAll();
   const Volume baked = readBaked(file);
   for (std::size_t c = 0; c < 3; ++c) test::expectSameVoxels(baked.albedo->values[c], volume.albedo->values[c]);
-  const auto lastBrick = baked.albedo->values[2].bricks().back();
+  const auto lastBrick = baked.albedo->values[2].brick(baked.albedo->values[2].count() - 1);
   EXPECT_EQ(lastBrick.back(), kInactiveVoxel);
 }
 
 TEST_F(FvxValues, AlbedosThatReachBeyondTheBoxAreNotStored) {
   Volume volume = test::volumeOfAllChannels();
   for (ScalarBricks& values : volume.albedo->values)
-    for (ScalarBricks::Brick& brick : values.bricks()) brick.fill(0.25f);
+    for (ScalarBricks::Brick& brick : values.editable()) brick.fill(0.25f);
   bake(volume, {.keepScalars = true});
   FvxEditor edited(bytes_);
   for (const ChunkEntry& chunk : edited.chunks(0, Channel::Albedo))

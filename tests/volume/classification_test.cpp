@@ -66,7 +66,7 @@ TEST(Classification, TheAutomaticScaleGivesAUniformCubeItsOpticalDepth) {
   for (const int resolution : {8, 32}) {
     Volume cube = makeProcedural("cube", resolution);  // edge 1
     EXPECT_NEAR(automaticDensityScale(cube, 3.0), 3.0, 1e-9);
-    for (ScalarBricks::Brick& brick : cube.scalars.bricks())
+    for (ScalarBricks::Brick& brick : cube.scalars.editable())
       for (float& value : brick) value *= 0.25f;
     EXPECT_NEAR(automaticDensityScale(cube, 3.0), 4.0 * 3.0, 1e-9);
   }

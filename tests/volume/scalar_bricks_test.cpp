@@ -3,7 +3,9 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <limits>
+#include <span>
 #include <vector>
 
 #include "engine/core/error.h"
@@ -32,8 +34,7 @@ TEST(ScalarBricks, KeepsEveryScalarWhereverTheBoxBeginsInItsFirstBrick) {
       if (scalarOf(v) != kInactiveVoxel) bricks.set(v, scalarOf(v));
     });
     forEachVoxel(size, [&](glm::ivec3 v) { EXPECT_EQ(bricks.at(v), scalarOf(v)); });
-    for (std::size_t i = 0; i < bricks.bricks().size(); ++i)
-      EXPECT_EQ((bricks.firstVoxel(i) + corner) % ScalarBricks::kEdge, glm::ivec3(0));
+    for (std::size_t i = 0; i < bricks.count(); ++i) EXPECT_EQ((bricks.firstVoxel(i) + corner) % ScalarBricks::kEdge, glm::ivec3(0));
   }
 }
 
@@ -44,10 +45,10 @@ TEST(ScalarBricks, ProgressMayAbandonAndChangesNothing) {
     const ScalarBricks plain = ScalarBricks::make(size, scalarOf);
     const Progress report = [&](std::string_view, double fraction) { fractions.push_back(fraction); };
     const ScalarBricks reported = ScalarBricks::make(size, scalarOf, everywhere, report);
-    ASSERT_EQ(reported.bricks().size(), plain.bricks().size());
-    for (std::size_t i = 0; i < plain.bricks().size(); ++i) {
+    ASSERT_EQ(reported.count(), plain.count());
+    for (std::size_t i = 0; i < plain.count(); ++i) {
       EXPECT_EQ(reported.cell(i), plain.cell(i));
-      EXPECT_EQ(reported.bricks()[i], plain.bricks()[i]);
+      EXPECT_EQ(reported.brick(i), plain.brick(i));
     }
     const glm::ivec3 cells = plain.cells();
     EXPECT_GE(fractions.size(), std::size_t(cells.x) * std::size_t(cells.y) * std::size_t(cells.z) / 512);
@@ -62,7 +63,7 @@ TEST(ScalarBricks, OnlyBricksWithDataTakeMemory) {
   const glm::ivec3 size(64);
   const ScalarBricks bricks = ScalarBricks::make(
       size, [](glm::ivec3 v) { return v.x < 8 && v.y >= 56 && v.z / 8 == 3 ? 1.0f : kInactiveVoxel; });
-  EXPECT_EQ(bricks.bricks().size(), 1u);
+  EXPECT_EQ(bricks.count(), 1u);
   EXPECT_EQ(bricks.firstVoxel(0), glm::ivec3(0, 56, 24));
   EXPECT_LT(bricks.bytes(), 64u * 64 * 64 * sizeof(float) / 100);
 }
@@ -72,10 +73,10 @@ TEST(ScalarBricks, AFunctionFillsTheSameBricksInEveryRun) {
   const ScalarBricks bricks = ScalarBricks::make(size, scalarOf);
   forEachVoxel(size, [&](glm::ivec3 v) { ASSERT_EQ(bricks.at(v), scalarOf(v)); });
   const ScalarBricks again = ScalarBricks::make(size, scalarOf);
-  ASSERT_EQ(again.bricks().size(), bricks.bricks().size());
-  for (std::size_t i = 0; i < bricks.bricks().size(); ++i) {
+  ASSERT_EQ(again.count(), bricks.count());
+  for (std::size_t i = 0; i < bricks.count(); ++i) {
     EXPECT_EQ(again.firstVoxel(i), bricks.firstVoxel(i));
-    EXPECT_EQ(again.bricks()[i], bricks.bricks()[i]);
+    EXPECT_EQ(again.brick(i), bricks.brick(i));
   }
 }
 
@@ -106,6 +107,97 @@ TEST(ScalarBricks, ABrickBeyondTheBoxOrThereTwiceIsABug) {
   }
 }
 
+/// The same scalars as codes of 8 and of 16 bits, and as floats, in a box that ends inside of bricks. Some have no data.
+struct CodedBricks {
+  static constexpr glm::ivec3 kSize{19, 8, 21};
+  static float valueOf(std::size_t code) { return code % 7 == 3 ? kInactiveVoxel : 0.25f * float(code) - 9.0f; }
+  static std::size_t codeAt(glm::ivec3 v) { return std::size_t(v.x * 31 + v.y * 17 + v.z * 5) % 256; }
+  template <typename Code>
+  static ScalarBricks coded() {
+    std::vector<float> values(std::size_t(1) << 8 * sizeof(Code));
+    for (std::size_t code = 0; code < values.size(); ++code) values[code] = valueOf(code);
+    return ScalarBricks::makeCodes<Code>(
+        kSize, [](glm::ivec3 v) { return Code(codeAt(v)); }, std::move(values));
+  }
+  const ScalarBricks floats = ScalarBricks::make(kSize, [](glm::ivec3 v) { return valueOf(codeAt(v)); });
+  const std::array<ScalarBricks, 2> codes{coded<std::uint8_t>(), coded<std::uint16_t>()};
+};
+
+TEST(ScalarBricks, CodesHaveTheScalarsOfFloats) {
+  const CodedBricks same;
+  for (const ScalarBricks& codes : same.codes) {
+    EXPECT_LE(codes.bytes(), same.floats.bytes() / 2 + codes.values().size() * sizeof(float) + 1000);
+    ASSERT_EQ(codes.count(), same.floats.count());
+    for (std::size_t i = 0; i < codes.count(); ++i) {
+      EXPECT_EQ(codes.cell(i), same.floats.cell(i));
+      EXPECT_EQ(codes.brick(i), same.floats.brick(i)) << "beyond the box, too";
+    }
+    std::vector<float> row(std::size_t(CodedBricks::kSize.x)), expected(row);
+    codes.copyRow(7, 20, row);
+    same.floats.copyRow(7, 20, expected);
+    EXPECT_EQ(row, expected);
+    forEachVoxel(CodedBricks::kSize, [&](glm::ivec3 v) { EXPECT_EQ(codes.at(v), same.floats.at(v)); });
+  }
+}
+
+TEST(ScalarBricks, CodesAreCountedInTheBoxOnly) {
+  const CodedBricks same;
+  std::vector<std::uint64_t> expected(256);
+  forEachVoxel(CodedBricks::kSize, [&](glm::ivec3 v) { ++expected[CodedBricks::codeAt(v)]; });
+  for (const ScalarBricks& codes : same.codes) {
+    std::vector<std::uint64_t> counts = codes.codeCounts();
+    counts.resize(expected.size());
+    EXPECT_EQ(counts, expected);
+  }
+}
+
+TEST(ScalarBricks, CroppedCodesStayCodes) {
+  const CodedBricks same;
+  const glm::ivec3 low(5, 1, 9), high(17, 6, 17);
+  const ScalarBricks expected = same.floats.cropped(low, high);
+  for (const ScalarBricks& codes : same.codes) {
+    const ScalarBricks cropped = codes.cropped(low, high);
+    EXPECT_FALSE(cropped.values().empty());
+    ASSERT_EQ(cropped.count(), expected.count());
+    for (std::size_t i = 0; i < cropped.count(); ++i) EXPECT_EQ(cropped.brick(i), expected.brick(i));
+  }
+}
+
+TEST(ScalarBricks, CodesThatAreChangedBecomeFloats) {
+  for (ScalarBricks codes : CodedBricks().codes) {
+    const ScalarBricks before = codes;
+    codes.set({2, 3, 4}, 77.0f);
+    EXPECT_TRUE(codes.values().empty());
+    forEachVoxel(CodedBricks::kSize, [&](glm::ivec3 v) { EXPECT_EQ(codes.at(v), v == glm::ivec3(2, 3, 4) ? 77.0f : before.at(v)); });
+    ScalarBricks edited = before;
+    ASSERT_EQ(edited.editable().size(), before.count());
+    for (std::size_t i = 0; i < before.count(); ++i) EXPECT_EQ(edited.brick(i), before.brick(i));
+  }
+}
+
+TEST(ScalarBricks, MappedCodesAreMappedScalars) {
+  const CodedBricks same;
+  const auto twice = [](float scalar) { return scalar == kInactiveVoxel ? -1.0 : 2.0 * double(scalar); };
+  for (const ScalarBricks& codes : same.codes) {
+    const std::vector<double> ofCodes = codes.mapValues<double>(twice);
+    for (std::size_t i = 0; i < codes.count(); ++i) {
+      std::array<double, ScalarBricks::kVoxels> mapped, expected;
+      codes.mapBrick(i, std::span<double>(mapped), twice, std::span<const double>(ofCodes));
+      same.floats.mapBrick(i, std::span<double>(expected), twice, std::span<const double>());
+      EXPECT_EQ(mapped, expected);
+    }
+  }
+}
+
+TEST(ScalarBricks, EmptyBricksOfCodesAreLeftOut) {
+  std::vector<float> values(256, 1.0f);
+  values[5] = kInactiveVoxel;
+  const ScalarBricks codes = ScalarBricks::makeCodes<std::uint8_t>(
+      glm::ivec3(24, 8, 8), [](glm::ivec3 v) { return std::uint8_t(v == glm::ivec3(12, 3, 3) ? 9 : 5); }, std::move(values));
+  ASSERT_EQ(codes.count(), 1u);
+  EXPECT_EQ(codes.cell(0), glm::ivec3(1, 0, 0));
+}
+
 TEST(ScalarBricks, TheLongestBoxTakesTheMemoryOfItsBricks) {
   const glm::ivec3 size((1 << 30) - 3), last = size - 1;
   ScalarBricks bricks(size, glm::ivec3(5, 0, 7));
@@ -116,7 +208,7 @@ TEST(ScalarBricks, TheLongestBoxTakesTheMemoryOfItsBricks) {
   EXPECT_EQ(bricks.at(last), 2.0f);
   EXPECT_EQ(bricks.at(last - 1), kInactiveVoxel);
   EXPECT_EQ(bricks.at({0, last.y, 0}), kInactiveVoxel);
-  EXPECT_EQ(bricks.bricks().size(), 2u);
+  EXPECT_EQ(bricks.count(), 2u);
   EXPECT_LT(bricks.bytes(), 1u << 14);
   EXPECT_EQ(bricks.cropped(last - 20, last).at(glm::ivec3(20)), 2.0f);
 }

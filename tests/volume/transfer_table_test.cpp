@@ -87,7 +87,7 @@ TEST(VoxelClassifier, BricksAreTheSameAsSingleVoxels) {
   const VoxelClassifier classifier(classification, volume);
   constexpr std::size_t kVoxels = std::tuple_size_v<ScalarBricks::Brick>;
   std::size_t held = 0;
-  for (std::size_t brick = 0; brick < volume.scalars.bricks().size(); ++brick) {
+  for (std::size_t brick = 0; brick < volume.scalars.count(); ++brick) {
     std::vector<float> extinction(kVoxels);
     std::vector<std::uint32_t> colors(kVoxels);
     classifier.classifyBrick(brick, extinction, colors);

@@ -43,8 +43,8 @@ TEST_F(VdbChannelsTest, TheBoxIsAroundBothAndEveryTemperatureHasABrick) {
         EXPECT_EQ(volume.temperature->values.at({x, y, z}), hot ? 0.7f : kInactiveVoxel);
         EXPECT_EQ(volume.scalar(x, y, z), dense ? 0.5f : kInactiveVoxel);
       }
-  for (std::size_t i = 0; i < volume.temperature->values.bricks().size(); ++i)
-    EXPECT_NE(volume.scalars.brickAt(volume.temperature->values.cell(i)), nullptr);
+  for (std::size_t i = 0; i < volume.temperature->values.count(); ++i)
+    EXPECT_TRUE(volume.scalars.numberAt(volume.temperature->values.cell(i)).has_value());
   // Nothing of it without being asked.
   EXPECT_EQ(readWith({}).dimensions, glm::ivec3(4));
 }
