@@ -83,6 +83,8 @@ float layersToFirst() {
   return fan.convergence == 0.0 ? 1.0 : min(abs(float(fan.firstPlane) - fan.farthest + 1.0 / fan.convergence), 1.0);
 }
 
+ivec3 cells;  // cellCounts, once for each ray, as lavapipe reads buffers lane by lane
+
 const int kGroupPairs = kSkipGroup / 2;  // pairs of planes that are skipped together: as many planes as a cell has voxels along its edge
 // Largest slope of a ray from whose position in the middle of a group the voxels that it reads there, and on the plane before, are in the
 // same cell or its neighbours.
@@ -107,8 +109,8 @@ bool isEmptyGroup(March march, int group) {
   const vec2 side = march.atFirst + march.perPlane * plane;
   place[(push.fan.axis + 1) % 3] = side.x;
   place[(push.fan.axis + 2) % 3] = side.y;
-  const ivec3 cell = clamp(ivec3(floor(place)) >> kSkipLevels, ivec3(0), cellCounts - 1);
-  return texelFetch(nearOccupied, cell.x + cellCounts.x * (cell.y + cellCounts.y * cell.z)).x == 0;
+  const ivec3 cell = clamp(ivec3(floor(place)) >> kSkipLevels, ivec3(0), cells - 1);
+  return texelFetch(nearOccupied, cell.x + cells.x * (cell.y + cells.y * cell.z)).x == 0;
 }
 
 void storeDepths(uint ray, int pair, vec2 depths) {
@@ -185,6 +187,7 @@ void main() {
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   if (kListed && group >= groupCount) return;
   const uint ray = gl_LocalInvocationID.x + kRaySweepThreads * (kListed ? groups[group] : group);
+  if (kSkips) cells = cellCounts;
   const FaceRays fan = push.fan;
   const uint rays = uint(fan.rayCount.x * fan.rayCount.y);
   if (ray >= rays) return;
