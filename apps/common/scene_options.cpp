@@ -217,6 +217,11 @@ void logRemarks(const SceneDescription& description, const Scene& scene) {
         "{} looks like a scan: the transfer function is made from its histogram; change it with --transfer-function, or "
         "show densities with --density-scale",
         volume.source);
+  if (given.transferFunction && !given.window && !description.method.showsValues() &&
+      drawsAir(volume, *scene.classification.transferFunction))
+    spdlog::warn(
+        "the transfer function draws the air around {}, which has other values than it is made for: --window LO..HI moves it over them",
+        volume.source);
   if (!description.camera.up && !description.camera.position && !volume.upReason.empty())
     spdlog::info("up is {}, as {}; change it with --up", numberText(volume.up), volume.upReason);
   if (scene.lighting && scene.lighting->environment && scene.lighting->environment->negativeValues > 0)

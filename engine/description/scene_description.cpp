@@ -11,6 +11,7 @@
 #include "engine/storage/baked_volume.h"
 #include "engine/visibility/detail_rule.h"
 #include "engine/volume/subject.h"
+#include "engine/volume/transfer_curves.h"
 #include "engine/volume/transfer_source.h"
 
 namespace freevoxels {
@@ -30,6 +31,9 @@ ClassificationDescription resolvedClassification(const ClassificationDescription
     if (given.transferFunction) {
       description.transferFunction = given.transferFunction;
       description.window = given.window;
+      if (const TransferCurves curves = readTransferCurves(*given.transferFunction);
+          !given.window && curves.range != TransferCurves::Range::Values)
+        description.window = windowOf(curves, *scene.volume);
       description.opacity = given.opacity;
       description.invert = given.invert;
     } else {

@@ -341,6 +341,21 @@ TransferFunction scanTransferFunction(const Volume& volume) {
   return function;
 }
 
+bool drawsAir(const Volume& volume, const TransferFunction& function) {
+  constexpr std::size_t kMostSamples = 4096;
+  constexpr double kNearlyAll = 0.8, kLeastOpacity = 0.01;
+  if (!looksLikeScan(volume)) return false;
+  const Classification automatic{.transferFunction = scanTransferFunction(volume)}, given{.transferFunction = function};
+  const std::vector<float> sides = valuesOnSides(volume);
+  const std::size_t step = sides.size() / kMostSamples + 1;
+  std::size_t samples = 0, drawn = 0;
+  for (std::size_t i = 0; i < sides.size(); i += step, ++samples)
+    if (classify(automatic, sides[i]).extinction == 0.0 &&
+        classify(given, sides[i]).extinction * automatic.transferFunction->unitDistance > kLeastOpacity)
+      ++drawn;
+  return double(drawn) > kNearlyAll * double(samples);
+}
+
 TransferFunction intensityFunction(const Volume& volume, IntensityProjection projection) {
   constexpr int kSteps = 32;
   auto [low, high] =

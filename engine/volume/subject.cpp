@@ -1,21 +1,42 @@
 #include "engine/volume/subject.h"
 
 #include <algorithm>
+#include <cmath>
 #include <cstdint>
 #include <glm/gtc/matrix_transform.hpp>
 #include <limits>
 #include <optional>
+#include <utility>
+#include <vector>
 
 namespace freevoxels {
 
 namespace {
 
 constexpr int kCellsAlongLongestSide = 64;
-constexpr float kMinDensity = 1.0f / 256.0f;  // as a fraction of the largest density
+constexpr float kLeastSeen = 1.0f / 256.0f;  // as a fraction of the largest density, or of the largest opacity of a transfer function
 constexpr double kMargin = 0.13;
 // Along an axis of few voxels none is left out of the image, nor what interpolation draws beyond their faces.
 constexpr int kFewVoxels = 16;
 constexpr double kReachOfVoxels = 1.0;  // voxels
+
+/// Makes what is below kLeastSeen of the largest opacity transparent.
+void leaveFaintOut(std::vector<TransferFunction::OpacityPoint>& points) {
+  using Point = TransferFunction::OpacityPoint;
+  const float least = kLeastSeen * std::ranges::max(points, {}, &Point::opacity).opacity;
+  std::vector<Point> kept;
+  for (const Point& point : points) {
+    if (!kept.empty()) {
+      const Point& before = kept.back();
+      const float above = std::max(before.opacity, point.opacity), below = std::min(before.opacity, point.opacity);
+      if (below < least && least < above)  // where the function crosses the least
+        kept.push_back({std::lerp(before.scalar, point.scalar, (least - before.opacity) / (point.opacity - before.opacity)), least});
+    }
+    kept.push_back(point);
+  }
+  for (Point& point : kept) point.opacity = std::max(point.opacity - least, 0.0f);
+  points = std::move(kept);
+}
 
 }  // namespace
 
@@ -31,7 +52,9 @@ Subject boxOf(const Volume& volume) {
 ContentCells contentCells(const Volume& volume, const Classification& classification) {
   const glm::ivec3 n = volume.dimensions;
   const int edge = (std::max({n.x, n.y, n.z}) + kCellsAlongLongestSide - 1) / kCellsAlongLongestSide;
-  return {.cells = metCells(volume, classification, edge, kMinDensity * volume.maximum), .edge = double(edge)};
+  Classification visible = classification;
+  if (visible.transferFunction) leaveFaintOut(visible.transferFunction->opacity);
+  return {.cells = metCells(volume, visible, edge, kLeastSeen * volume.maximum), .edge = double(edge)};
 }
 
 bool isAsBaked(const Volume& volume, const Classification& classification) {

@@ -271,6 +271,23 @@ TEST(SceneDescription, WhatWasResolvedComesToTheSameAgain) {
   EXPECT_EQ(rendererText(resolved, again), rendererText(scene, first));
 }
 
+TEST(SceneDescription, AFunctionOfTheVolumesValuesIsResolvedWithTheirRange) {
+  SceneDescription scene;
+  scene.input = {.volume = "procedural:head", .resolution = glm::ivec3(16)};
+  scene.classification.transferFunction = "viridis";
+  const auto volume = std::make_shared<const Volume>(scene.readVolume(1u << 20));
+  const Scene first = scene.resolve(volume);
+  const SceneDescription resolved = scene.resolved(first);
+  ASSERT_TRUE(resolved.classification.window.has_value());
+  EXPECT_EQ(float(resolved.classification.window->low), first.classification.transferFunction->opacity.front().scalar);
+  EXPECT_EQ(float(resolved.classification.window->high), first.classification.transferFunction->opacity.back().scalar);
+  EXPECT_EQ(transferFunctionJson(*resolved.resolve(volume).classification.transferFunction),
+            transferFunctionJson(*first.classification.transferFunction));
+  EXPECT_EQ(rendererText(resolved, resolved.resolve(volume)), rendererText(scene, first));
+  scene.classification.transferFunction = "ct-bone";
+  EXPECT_FALSE(scene.resolved(scene.resolve(volume)).classification.window.has_value()) << "of values of its own";
+}
+
 TEST(SceneDescription, ATurnKeepsItsOrbitInPlaceOfTheFirstFramesPosition) {
   SceneDescription scene;
   scene.input = {.volume = "procedural:cloud", .resolution = glm::ivec3(16)};

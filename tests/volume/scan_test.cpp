@@ -144,6 +144,19 @@ TEST(Scan, TransferFunctionOfSidesOfAllClassesIsTransparentAtTheLowest) {
   EXPECT_EQ(opacityAt(function, 62.0f), 0.6f);
 }
 
+TEST(Scan, AFunctionOfOtherValuesDrawsTheAir) {
+  const auto draws = [](const Volume& volume, float first, float last) {
+    const TransferFunction function{.opacity = {{first, 0.0f}, {last, 0.5f}}, .color = {{first, glm::vec3(1.0f)}}, .unitDistance = 1.0};
+    return drawsAir(volume, function);
+  };
+  const Volume scan = nested(300.0f, 340.0f, 700.0f, 1200.0f);
+  EXPECT_TRUE(draws(scan, 0.0f, 1000.0f)) << "as the air is 300";
+  EXPECT_FALSE(draws(scan, 400.0f, 1000.0f));
+  EXPECT_FALSE(draws(makeVolume({32, 32, 32}, glm::dmat4(1.0), [](int x, int y, int z) { return float((x * 7 + y * 5 + z * 3) % 100); }),
+                     -100.0f, 100.0f))
+      << "without air, what is on the sides is meant";
+}
+
 TEST(Scan, TransferFunctionLeavesOutliersAside) {
   const Volume usual = nested(0.0f, 40.0f, 90.0f, 200.0f);
   const Volume volume = makeVolume({32, 32, 32}, glm::dmat4(1.0), [&](int x, int y, int z) {

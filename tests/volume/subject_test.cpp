@@ -58,6 +58,12 @@ TEST(Content, WithATransferFunctionIsWhatItShows) {
   expectBlock(contentOf(volume, {.transferFunction = function}), volume, 4.0);
 }
 
+TEST(Content, OfATransferFunctionIsMoreThanAHaze) {
+  const Volume volume = withBlock(0.001f, 1.0f);
+  const TransferFunction function{.opacity = {{0.0f, 0.0f}, {1.0f, 0.5f}}, .color = {{0.0f, glm::vec3(1.0f)}}, .unitDistance = 1.0};
+  expectBlock(contentOf(volume, {.transferFunction = function}), volume, 4.0);
+}
+
 TEST(Content, OfNothingVisibleIsTheBox) {
   const Volume volume = makeVolume({5, 6, 7}, obliqueTransform(), [](int, int, int) { return 0.0f; });
   EXPECT_EQ(contentOf(volume, {.densityScale = 1.0}).points, boxOf(volume).points);
