@@ -10,33 +10,26 @@ layout(constant_id = 1) const bool kFlux = false;
 layout(local_size_x = kScatteringThreads) in;
 layout(scalar, push_constant) uniform Push { ScatteringCollectPush push; };
 layout(binding = 0, scalar) readonly restrict buffer Directions { SweepDirection directions[]; };
-layout(binding = 1) uniform textureBuffer light;  // by direction of the batch and cell
-layout(binding = 2, scalar) restrict buffer Vectors { float vectors[]; };
+layout(binding = 1) uniform textureBuffer light;  // by direction, channel and cell
+layout(binding = 2) uniform textureBuffer before;  // the vectors
+layout(binding = 3, scalar) writeonly restrict buffer Vectors { float vectors[]; };
 
 void main() {
   const int cell = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
   if (cell >= push.count) return;
   const int moments = kFlux ? 4 : 1, vectorLength = moments * kChannels * push.count;
   const int toNext = kChannels * push.count;
-  vec3 sums[4];  // by moment
-  [[unroll]] for (int m = 0; m < moments; ++m) {
-    sums[m] = vec3(0.0);
-    if (push.isFirst == 0)
-      [[unroll]] for (int c = 0; c < kChannels; ++c) sums[m][c] = vectors[push.to * vectorLength + m * toNext + c * push.count + cell];
-  }
-  for (int d = 0; d < push.directionCount; ++d) {
-    const vec3 own = texelFetch(light, d * push.count + cell).rgb;
+  vec3 sums[4] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));  // by moment
+  for (int d = 0; d < push.directions; ++d) {
+    vec3 own = vec3(0.0);
+    [[unroll]] for (int c = 0; c < kChannels; ++c) own[c] = texelFetch(light, (d * kChannels + c) * push.count + cell).x;
     sums[0] += own;
-    if (kFlux) [[unroll]] for (int i = 0; i < 3; ++i) sums[1 + i] += own * directions[push.firstDirection + d].unit[i];
+    if (kFlux) [[unroll]] for (int i = 0; i < 3; ++i) sums[1 + i] += own * directions[d].unit[i];
   }
   [[unroll]] for (int m = 0; m < moments; ++m)
     [[unroll]] for (int c = 0; c < kChannels; ++c) {
       const int place = m * toNext + c * push.count + cell;
-      float value = sums[m][c];
-      if (push.isLast != 0) {
-        value *= push.ofSum;
-        if (push.ofFrom != 0.0) value += push.ofFrom * vectors[push.from * vectorLength + place];
-      }
-      vectors[push.to * vectorLength + place] = value;
+      const float from = push.ofFrom != 0.0 ? push.ofFrom * texelFetch(before, push.from * vectorLength + place).x : 0.0;
+      vectors[push.to * vectorLength + place] = push.ofSum * sums[m][c] + from;
     }
 }

@@ -9,6 +9,7 @@
 
 layout(constant_id = 0) const int kChannels = 1;
 layout(constant_id = 2) const bool kFlux = false;
+layout(constant_id = 3) const bool kAtInfinity = false;
 
 layout(local_size_x = kDirectThreads) in;
 layout(scalar, push_constant) uniform Push { ScatteringDirectPush push; };
@@ -31,20 +32,24 @@ void main() {
   const ivec3 first = push.ratio * ivec3(number % push.cells.x, number / push.cells.x % push.cells.y, number / (push.cells.x * push.cells.y));
   vec3 sums[4] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   float weight = 0.0;
+  // All places of parallel rays have the same.
+  const FaceRays parallel = light.fans[0];
   for (int part = 0; part < push.ratio * push.ratio * push.ratio; ++part) {
     const ivec3 cell = first + ivec3(part % push.ratio, part / push.ratio % push.ratio, part / (push.ratio * push.ratio));
     const float own = extinctionAt(cell);
     if (own <= 0.0) continue;
     const vec3 position = vec3(cell);
-    const vec3 toLight = push.atInfinity != 0 ? push.place : push.place - position;
+    const vec3 toLight = kAtInfinity ? push.place : push.place - position;
     const vec3 size = abs(toLight);
     const float most = max(size.x, max(size.y, size.z));
-    const float layers = push.atInfinity != 0 ? 0.5 : min(most, 0.5);  // of the cell itself, up to the light
+    const float layers = kAtInfinity ? 0.5 : min(most, 0.5);  // of the cell itself, up to the light
     const float layer = length(push.directToWorld * (toLight / max(most, 1e-6)));
-    const float depth = depthUpTo(light.fans[fanIndex(-toLight)], position) + layers * layer * own;
+    FaceRays fan = parallel;
+    if (!kAtInfinity) fan = light.fans[fanIndex(-toLight)];
+    const float depth = depthUpTo(fan, position) + layers * layer * own;
     const vec3 way = push.directToWorld * toLight;
     const float edge2 = pow(abs(determinant(push.directToWorld)), 2.0 / 3.0);
-    const float distance2 = push.atInfinity != 0 ? 1.0 : max(dot(way, way), kNearestLight2 * edge2);
+    const float distance2 = kAtInfinity ? 1.0 : max(dot(way, way), kNearestLight2 * edge2);
     const vec3 reaching = own / distance2 * push.radiance * exp(-depth * push.depthScale);
     const vec3 unit = way * inversesqrt(max(dot(way, way), 1e-30));
     sums[0] += reaching;

@@ -3,7 +3,8 @@
 // Structs that C++ and the shaders of scattering share. engine/lighting/scattering_solver.h describes the passes.
 //
 // A vector has the values of all cells, plane after plane: for each moment of the radiance's direction (its mean, and with a phase function
-// the three components of its flux) and for each channel a plane of all cells, x fastest. The vectors of a grid are in one buffer.
+// the three components of its flux) and for each channel a plane of all cells, x fastest. The vectors of a grid are in one buffer. Shaders
+// read them as texels: lavapipe reads buffers lane by lane.
 #include "interface.h"
 
 #ifdef __cplusplus
@@ -12,8 +13,7 @@ namespace freevoxels::shader {
 
 FV_CONSTANT int kScatteringThreads = 64;
 FV_CONSTANT int kDirectThreads = 64;
-FV_CONSTANT int kDotThreads = 128;
-FV_CONSTANT int kDotGroups = 64;
+FV_CONSTANT int kDotSums = 64 * kScatteringThreads;  // that a scalar product is made of, at equal distances
 FV_CONSTANT int kMaxBasis = 12;  // vectors that GMRES keeps before it starts again
 
 // A direction of the sweeps.
@@ -32,8 +32,7 @@ struct DirectFans {
 struct ScatteringDirectPush {
   ivec3 cells;
   ivec3 directCells;
-  int ratio;  // direct cells along the edge of a cell
-  int atInfinity;
+  int ratio;           // direct cells along the edge of a cell
   vec3 place;          // of the light, direct cells; at infinity the direction towards it
   vec3 radiance;       // irradiance / 4 pi, for a position at distance 1
   vec3 depthScale;     // factor of optical depths, by channel
@@ -53,17 +52,15 @@ struct ScatteringSourcePush {
 // scattering_sweep.comp
 struct ScatteringSweepPush {
   ivec3 cells;
-  int firstDirection;
   int hasSky;
   float flux;  // factor of the flux in the light that is scattered
 };
 
 // scattering_collect.comp
 struct ScatteringCollectPush {
-  int count;                           // cells
-  int firstDirection, directionCount;  // of the sweeps before
-  int isFirst, isLast;                 // of the batches of directions
-  int from, to;                        // vectors: to = ofFrom * from + ofSum * (sum over all directions)
+  int count;       // cells
+  int directions;  // of the sweeps before
+  int from, to;    // vectors: to = ofFrom * from + ofSum * (sum over all directions)
   float ofFrom, ofSum;
 };
 

@@ -1,11 +1,12 @@
 #version 460
 // Interpolates the solution on coarse cells to cells of half the edge, trilinearly between the centres of the coarse ones.
 #extension GL_GOOGLE_include_directive : require
+#extension GL_EXT_samplerless_texture_functions : require
 #include "scattering_interface.h"
 
 layout(local_size_x = kScatteringThreads) in;
 layout(scalar, push_constant) uniform Push { ScatteringRefinePush push; };
-layout(binding = 0, scalar) readonly restrict buffer Coarse { float coarse[]; };
+layout(binding = 0) uniform textureBuffer coarse;
 layout(binding = 1, scalar) writeonly restrict buffer Fine { float fine[]; };
 
 void main() {
@@ -21,7 +22,7 @@ void main() {
       const bvec3 far = bvec3(corner & 1, corner & 2, corner & 4);
       const ivec3 at = mix(own, next, far);
       const vec3 shares = mix(vec3(0.75), vec3(0.25), far);
-      sum += shares.x * shares.y * shares.z * coarse[plane * coarseCount + at.x + m.x * (at.y + m.y * at.z)];
+      sum += shares.x * shares.y * shares.z * texelFetch(coarse, plane * coarseCount + at.x + m.x * (at.y + m.y * at.z)).x;
     }
     fine[plane * count + number] = sum;
   }

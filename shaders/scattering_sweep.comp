@@ -1,5 +1,5 @@
 #version 460
-// The radiance at the centres of all cells in a batch of directions, times the directions' weights: the sweeps of Subr et al. 2007, Section
+// The radiance at the centres of all cells in all directions, times the directions' weights: the sweeps of Subr et al. 2007, Section
 // 3.1, with the light that cells send out as their source. A thread marches through all planes across the last axis of the step. Where it
 // leaves the volume at a side, it continues at the opposite side with the line that enters there, so that all lines are marched and every
 // cell is visited once.
@@ -16,18 +16,18 @@ layout(scalar, push_constant) uniform Push { ScatteringSweepPush push; };
 layout(binding = 0) uniform textureBuffer medium;   // whose first planes are extinctions
 layout(binding = 1) uniform textureBuffer sources;  // by moment and cell
 layout(binding = 2, scalar) readonly restrict buffer Directions { SweepDirection directions[]; };
-layout(binding = 3, rgba32f) writeonly uniform imageBuffer light;  // by direction of the batch and cell
+layout(binding = 3, scalar) writeonly restrict buffer Light { float light[]; };  // by direction, channel and cell
 
 void main() {
   const int number = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
-  const SweepDirection direction = directions[push.firstDirection + int(gl_WorkGroupID.z)];
+  const SweepDirection direction = directions[int(gl_WorkGroupID.z)];
   const ivec3 axes = direction.step.z != 0 ? ivec3(0, 1, 2) : direction.step.y != 0 ? ivec3(0, 2, 1) : ivec3(1, 2, 0);
   const ivec2 sides = ivec2(push.cells[axes.x], push.cells[axes.y]);
   if (number >= sides.x * sides.y) return;
   const ivec3 strides = ivec3(1, push.cells.x, push.cells.x * push.cells.y);
   const int planes = push.cells[axes.z], count = strides.z * push.cells.z;
   const ivec3 step = ivec3(direction.step[axes.x], direction.step[axes.y], direction.step[axes.z]);
-  const int slot = int(gl_WorkGroupID.z) * count;
+  const int slot = int(gl_WorkGroupID.z) * kChannels * count;
   const vec3 sky = push.hasSky != 0 ? direction.sky : vec3(0.0), flux = push.flux * direction.unit;
   ivec2 side = ivec2(number % sides.x, number / sides.x);
   int plane = step.z > 0 ? 0 : planes - 1;
@@ -50,7 +50,7 @@ void main() {
       radiance[c] = radiance[c] * through[c] + 0.5 * direction.stepLength * mean[c] * (sourceBefore[c] + source[c]);
     }
     sourceBefore = source;
-    imageStore(light, slot + place, vec4(direction.weight * radiance, 0.0));
+    [[unroll]] for (int c = 0; c < kChannels; ++c) light[slot + c * count + place] = direction.weight * radiance[c];
     plane += step.z;
     side += step.xy;
     const bvec2 below = lessThan(side, ivec2(0)), above = greaterThanEqual(side, sides);

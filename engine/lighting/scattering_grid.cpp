@@ -23,15 +23,6 @@ namespace freevoxels {
 namespace {
 
 constexpr int kDirections = 26;
-/// Directions are swept together as far as their light takes no more than this, the memory that a solution needs least.
-constexpr std::uint64_t kBatchBytes = std::uint64_t(4) << 20;
-
-int batchOf(std::size_t cells) {
-  const std::uint64_t bytes = cells * sizeof(glm::vec4);
-  const int most = int(std::clamp<std::uint64_t>(kBatchBytes / bytes, 1, kDirections));
-  const int batches = (kDirections + most - 1) / most;
-  return (kDirections + batches - 1) / batches;
-}
 
 /// A light in the index space of direct cells.
 RaySource directSource(const Light& light, const glm::dmat4& indexToWorld, const CellGrid& direct) {
@@ -47,15 +38,15 @@ bool isGreyLight(const Lighting& lighting) {
          std::ranges::all_of(lighting.lights, [&](const Light& light) { return grey(light.color); });
 }
 
-Buffer makeBuffer(const Device& device, std::size_t values, const char* name, MemoryUse use = MemoryUse::Device) {
-  return Buffer(device, std::max<std::size_t>(values, 1) * sizeof(float), use, name);
+Buffer makeBuffer(const Device& device, std::size_t values, const char* name, MemoryUse use = MemoryUse::Device,
+                  VkBufferUsageFlags usage = 0) {
+  return Buffer(device, std::max<std::size_t>(values, 1) * sizeof(float), use, name, usage);
 }
 
-std::pair<Buffer, TexelView> makeTexelBuffer(const Device& device, std::size_t texels, VkFormat format, const char* name) {
-  const std::size_t bytes = format == VK_FORMAT_R32_SFLOAT ? sizeof(float) : sizeof(glm::vec4);
-  Buffer buffer(device, std::max<std::size_t>(texels, 1) * bytes, MemoryUse::Device, name,
-                VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
-  TexelView view(device, buffer, format);
+/// Floats that shaders write as a buffer and read as texels.
+std::pair<Buffer, TexelView> makeFloats(const Device& device, std::size_t values, const char* name) {
+  Buffer buffer = makeBuffer(device, values, name, MemoryUse::Device, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
+  TexelView view(device, buffer, VK_FORMAT_R32_SFLOAT);
   return {std::move(buffer), std::move(view)};
 }
 
@@ -66,9 +57,7 @@ std::uint64_t ScatteringGrid::bytes(glm::ivec3 dimensions, const glm::dmat4& ind
   const std::size_t cells = ScatteringMedium::gridOf(dimensions).count();
   const std::uint64_t planes = kChannels * (lighting.phaseG != 0.0 ? 4 : 1), medium = 3 * kChannels;
   // 1 + 1/8 + 1/64 + ... = 8/7: with all coarser grids.
-  const std::uint64_t solving =
-      (cells * sizeof(float) * (planes * (shader::kMaxBasis + 3) + medium) + cells * sizeof(glm::vec4) * std::uint64_t(batchOf(cells))) *
-      8 / 7;
+  const std::uint64_t solving = cells * sizeof(float) * (planes * (shader::kMaxBasis + 3) + medium + kChannels * kDirections) * 8 / 7;
   const CellGrid direct = ScatteringMedium::directGridOf(dimensions);
   std::uint64_t rays = 0;
   for (const Light& light : lighting.lights) rays = std::max(rays, denseRayBytes(direct.cells, directSource(light, indexToWorld, direct)));
@@ -87,7 +76,6 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   emits_ = medium.emits();
   lit_ = !lighting.lights.empty() && lighting.scattering != 1;  // what is scattered once is not in cells
   depthScale_ = lighting.tint * deltaScaleOf(lighting, medium);
-  batch_ = batchOf(count_);
   compileAhead();
 
   std::vector<float> planes;
@@ -102,7 +90,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
       planes.push_back(
           float(lighting.tint[c] * (1.0 - split.forward) * (1.0 - lighting.surface * surfaces[i]) * medium.cells()[i].scattering[c]));
   for (int c = 0; c < channels_ && emits_; ++c) addPlane([&](const auto& cell) { return cell.emission[c]; });
-  std::tie(mediumPlanes_, mediumTexels_) = makeTexelBuffer(device, planes.size(), VK_FORMAT_R32_SFLOAT, "scattering medium");
+  std::tie(mediumPlanes_, mediumTexels_) = makeFloats(device, planes.size(), "scattering medium");
   upload(device, mediumPlanes_, std::as_bytes(std::span(planes)));
 
   const std::vector<glm::dvec3> sky = surroundingRadiances(lighting, directions_, medium.indexToWorld());
@@ -119,14 +107,14 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   upload(device, sweepDirections_, std::as_bytes(std::span(sweepDirections)));
 
   const auto vectorSize = std::size_t(vectorLength());
-  direct_ = makeBuffer(device, vectorSize, "direct light of cells");
+  std::tie(direct_, directTexels_) = makeFloats(device, vectorSize, "direct light of cells");
   if (lit_) makeDirect(lighting);  // with buffers of its own, before there are more
-  vectors_ = makeBuffer(device, (kBasis + shader::kMaxBasis + 1) * vectorSize, "scattering vectors");
-  std::tie(sources_, sourceTexels_) =
-      makeTexelBuffer(device, std::size_t(moments_) * count_, VK_FORMAT_R32G32B32A32_SFLOAT, "scattering sources");
-  std::tie(light_, lightTexels_) =
-      makeTexelBuffer(device, std::size_t(batch_) * count_, VK_FORMAT_R32G32B32A32_SFLOAT, "light of directions");
-  sums_ = makeBuffer(device, std::size_t(shader::kMaxBasis + 2) * shader::kDotGroups, "scattering sums", MemoryUse::Readback);
+  std::tie(vectors_, vectorTexels_) = makeFloats(device, (kBasis + shader::kMaxBasis + 1) * vectorSize, "scattering vectors");
+  sources_ = Buffer(device, std::size_t(moments_) * count_ * sizeof(glm::vec4), MemoryUse::Device, "scattering sources",
+                    VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+  sourceTexels_ = TexelView(device, sources_);
+  std::tie(light_, lightTexels_) = makeFloats(device, directions_.size() * std::size_t(channels_) * count_, "light of directions");
+  sums_ = makeBuffer(device, std::size_t(shader::kMaxBasis + 2) * std::size_t(shader::kDotSums), "scattering sums", MemoryUse::Readback);
   Commands commands(device);
   commands.beginPass("scattering");
   commands.clear(vectors_);
@@ -135,7 +123,7 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
 
 /// Asks for all pipelines at once, so that they are compiled at the same time.
 void ScatteringGrid::compileAhead() const {
-  if (lit_) makeComputePipeline(device_, shaders::scattering_direct, directConstants(true));
+  if (lit_) makeComputePipeline(device_, shaders::scattering_direct, directConstants(true, true));
   makeComputePipeline(device_, shaders::scattering_source, constants());
   makeComputePipeline(device_, shaders::scattering_sweep, sweepConstants());
   makeComputePipeline(device_, shaders::scattering_collect, constants());
@@ -180,15 +168,14 @@ void ScatteringGrid::makeDirect(const Lighting& lighting) {
     const shader::ScatteringDirectPush push{.cells = medium_.grid().cells,
                                             .directCells = fine.cells,
                                             .ratio = medium_.grid().edge / fine.edge,
-                                            .atInfinity = light.atInfinity ? 1 : 0,
                                             .place = source.place,
                                             .radiance = light.intensity / (4.0 * std::numbers::pi) * light.color,
                                             .depthScale = depthScale_,
                                             .isFirst = i == 0 ? 1 : 0,
                                             .directToWorld = directToWorld,
                                             .rays = addressWords(rays.depths().address())};
-    commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_direct, directConstants(depths.has_value())), bindings, push,
-                            count_);
+    commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_direct, directConstants(depths.has_value(), light.atInfinity)),
+                            bindings, push, count_);
     commands.submitAndWait();
   }
 }
@@ -197,7 +184,7 @@ void ScatteringGrid::startFrom(const ScatteringGrid& coarse) {
   FV_CHECK_EQ(coarse.planes(), planes());
   Commands commands(device_);
   commands.beginPass("scattering");
-  const std::array<Binding, 2> bindings{&coarse.vectors_, &vectors_};
+  const std::array<Binding, 2> bindings{&coarse.vectorTexels_, &vectors_};
   commands.dispatchLinear(
       makeComputePipeline(device_, shaders::scattering_refine), bindings,
       shader::ScatteringRefinePush{.cells = medium_.grid().cells, .coarseCells = coarse.medium_.grid().cells, .planes = planes()}, count_);
@@ -213,36 +200,28 @@ void ScatteringGrid::sweep(const Sweep& wanted, const Progress& progress) {
                                              .emission = wanted.emission && emits_ ? scattering + channels_ : -1,
                                              .from = wanted.scattered,
                                              .direct = wanted.direct && lit_ ? 0 : -1};
-  const std::array<Binding, 4> sourceBindings{&mediumPlanes_, &vectors_, &direct_, &sourceTexels_};
+  const std::array<Binding, 4> sourceBindings{&mediumTexels_, &vectorTexels_, &directTexels_, &sourceTexels_};
   commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_source, constants()), sourceBindings, sources, count_);
   commands.barrier(kComputeStage, kComputeStage);
   const Pipeline sweepPass = makeComputePipeline(device_, shaders::scattering_sweep, sweepConstants());
   const Pipeline collectPass = makeComputePipeline(device_, shaders::scattering_collect, constants());
-  const std::array<Binding, 4> sweepBindings{&mediumTexels_, &sourceTexels_, &sweepDirections_, &lightTexels_};
-  const std::array<Binding, 3> collectBindings{&sweepDirections_, &lightTexels_, &vectors_};
+  const std::array<Binding, 4> sweepBindings{&mediumTexels_, &sourceTexels_, &sweepDirections_, &light_};
+  const std::array<Binding, 4> collectBindings{&sweepDirections_, &lightTexels_, &vectorTexels_, &vectors_};
   const glm::ivec3 cells = medium_.grid().cells;
   const std::uint64_t lines = std::max({std::uint64_t(cells.x) * std::uint64_t(cells.y), std::uint64_t(cells.x) * std::uint64_t(cells.z),
                                         std::uint64_t(cells.y) * std::uint64_t(cells.z)});
-  for (int first = 0; first < kDirections; first += batch_) {
-    const int batch = std::min(batch_, kDirections - first);
-    commands.dispatchLinear(
-        sweepPass, sweepBindings,
-        shader::ScatteringSweepPush{.cells = cells, .firstDirection = first, .hasSky = wanted.sky && hasSky_ ? 1 : 0, .flux = float(flux_)},
-        lines, std::uint32_t(batch));
-    commands.barrier(kComputeStage, kComputeStage);
-    commands.dispatchLinear(collectPass, collectBindings,
-                            shader::ScatteringCollectPush{.count = int(count_),
-                                                          .firstDirection = first,
-                                                          .directionCount = batch,
-                                                          .isFirst = first == 0 ? 1 : 0,
-                                                          .isLast = first + batch == kDirections ? 1 : 0,
-                                                          .from = wanted.from,
-                                                          .to = wanted.to,
-                                                          .ofFrom = wanted.ofFrom,
-                                                          .ofSum = wanted.ofSum},
-                            count_);
-    commands.barrier(kComputeStage, kComputeStage);
-  }
+  commands.dispatchLinear(sweepPass, sweepBindings,
+                          shader::ScatteringSweepPush{.cells = cells, .hasSky = wanted.sky && hasSky_ ? 1 : 0, .flux = float(flux_)}, lines,
+                          kDirections);
+  commands.barrier(kComputeStage, kComputeStage);
+  commands.dispatchLinear(collectPass, collectBindings,
+                          shader::ScatteringCollectPush{.count = int(count_),
+                                                        .directions = kDirections,
+                                                        .from = wanted.from,
+                                                        .to = wanted.to,
+                                                        .ofFrom = wanted.ofFrom,
+                                                        .ofSum = wanted.ofSum},
+                          count_);
   commands.submitAndWait(progress);
 }
 
@@ -281,16 +260,16 @@ std::vector<double> ScatteringGrid::dots(int vector, int first, int count) {
   FV_CHECK_LE(count, shader::kMaxBasis + 2);
   Commands commands(device_);
   commands.beginPass("scattering");
-  const std::array<Binding, 2> bindings{&vectors_, &sums_};
+  const std::array<Binding, 2> bindings{&vectorTexels_, &sums_};
   commands.dispatch(makeComputePipeline(device_, shaders::scattering_dots), bindings,
                     shader::ScatteringDotsPush{.values = vectorLength(), .vector = vector, .first = first, .count = count},
-                    {shader::kDotThreads * shader::kDotGroups, 1, 1});
+                    {shader::kDotSums, 1, 1});
   commands.submitAndWait();
   const auto* const parts = reinterpret_cast<const float*>(sums_.mapped());
   std::vector<double> result(std::size_t(count), 0.0);
   for (std::size_t product = 0; product < result.size(); ++product)
-    for (std::size_t group = 0; group < std::size_t(shader::kDotGroups); ++group)
-      result[product] += double(parts[product * std::size_t(shader::kDotGroups) + group]);
+    for (std::size_t sum = 0; sum < std::size_t(shader::kDotSums); ++sum)
+      result[product] += double(parts[product * std::size_t(shader::kDotSums) + sum]);
   return result;
 }
 
@@ -306,7 +285,7 @@ void ScatteringGrid::combine(const Combination& combination) {
   for (std::size_t i = 0; i < combination.factors.size(); ++i) push.factors[i] = float(combination.factors[i]);
   Commands commands(device_);
   commands.beginPass("scattering");
-  const std::array<Binding, 1> bindings{&vectors_};
+  const std::array<Binding, 2> bindings{&vectorTexels_, &vectors_};
   commands.dispatchLinear(makeComputePipeline(device_, shaders::scattering_combine), bindings, push, std::uint64_t(vectorLength()));
   commands.submitAndWait();
 }

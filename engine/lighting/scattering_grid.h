@@ -63,7 +63,9 @@ class ScatteringGrid {
   int vectorLength() const { return planes() * int(count_); }
   Specialisation constants() const { return {std::uint32_t(channels_), moments_ > 1}; }
   Specialisation sweepConstants() const { return {std::uint32_t(channels_), moments_ > 1, tinted_}; }
-  Specialisation directConstants(bool rayTexels) const { return {std::uint32_t(channels_), rayTexels, moments_ > 1}; }
+  Specialisation directConstants(bool rayTexels, bool atInfinity) const {
+    return {std::uint32_t(channels_), rayTexels, moments_ > 1, atInfinity};
+  }
   void compileAhead() const;
 
   const Device& device_;
@@ -75,10 +77,10 @@ class ScatteringGrid {
   bool tinted_ = false;  ///< whether each channel has its own extinction
   bool hasSky_ = false, emits_ = false, lit_ = false;
   glm::dvec3 depthScale_{1.0};  ///< factor of optical depths towards lights
-  int batch_;                  ///< directions that are swept at a time
   Buffer mediumPlanes_, direct_, vectors_, sweepDirections_, sums_;
-  Buffer sources_, light_;  ///< vec4 by moment and cell, and by direction of a batch and cell
-  TexelView mediumTexels_, sourceTexels_, lightTexels_;
+  Buffer sources_;  ///< vec4 by moment and cell
+  Buffer light_;    ///< by direction, channel and cell
+  TexelView mediumTexels_, directTexels_, vectorTexels_, sourceTexels_, lightTexels_;
 };
 
 }  // namespace freevoxels
