@@ -44,7 +44,7 @@ const ScatteringSolver* CubeDrawing::State::solveScattering(const FrameSettings&
     }
     scattering.emplace(device, std::move(medium));
   }
-  scattering->solve(*wanted.lighting, times, progress);
+  scattering->solve(*wanted.lighting, wanted.scatteringCoarseness, times, progress);
   return &*scattering;
 }
 

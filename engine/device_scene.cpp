@@ -64,7 +64,7 @@ void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, Fra
       const StageTimer timer(frameTimes, "scattering medium");
       scattering_.emplace(device, ScatteringMedium(hostVolume, classification));
     }
-    scattering_->solve(*settings.lighting, frameTimes, progress);
+    scattering_->solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
   }
   prepareOwnLights(settings, scalars, constants, progress);
   if (scatters_) setScattered(constants, *settings.lighting, *scattering_);

@@ -53,7 +53,7 @@ MergedDrawing::MergedDrawing(const Device& device, std::vector<SceneVolume> volu
 
 MergedDrawing::~MergedDrawing() = default;
 
-void MergedDrawing::solveScattering(const Lighting& lighting, const Progress& progress) {
+void MergedDrawing::solveScattering(const Lighting& lighting, int coarseness, const Progress& progress) {
   scatters_ = hasScatteredLight(lighting, std::ranges::any_of(media_, [](const Medium& m) { return m.scene.built.volume.hasEmission(); }));
   if (!scatters_) return;
   if (!scattering_) {
@@ -62,14 +62,14 @@ void MergedDrawing::solveScattering(const Lighting& lighting, const Progress& pr
     for (const Medium& medium : media_) media.push_back({medium.volume.get(), &medium.scene.classification});
     scattering_.emplace(device_, ScatteringMedium(media));
   }
-  scattering_->solve(lighting, times_, progress);
+  scattering_->solve(lighting, coarseness, times_, progress);
 }
 
 /// Sets the light of each volume's constants, of what is scattered by all of them.
 void MergedDrawing::prepareLights(Frame& frame, std::span<const Lighting> lightings, const Progress& progress) {
   Lighting common = *frame.settings.lighting;
   for (const Lighting& lighting : lightings) common.surface = std::min(common.surface, lighting.surface);
-  solveScattering(common, progress);
+  solveScattering(common, frame.settings.scatteringCoarseness, progress);
   for (std::size_t i = 0; i < media_.size(); ++i) {
     FrameSettings settings = frame.settings;
     settings.lighting = lightings[i];

@@ -42,7 +42,7 @@ class MergedDrawing {
     std::vector<MergedPass::Part> parts = {};
   };
   Frame prepare(const Camera& camera, const FrameSettings& settings, const Progress& progress);
-  void solveScattering(const Lighting& lighting, const Progress& progress);
+  void solveScattering(const Lighting& lighting, int coarseness, const Progress& progress);
   void prepareRays(Medium& medium, const Camera& camera, Frame& frame, const Progress& progress);
   void prepareLights(Frame& frame, std::span<const Lighting> lightings, const Progress& progress);
   std::vector<ShadowingVolume> othersThan(const Medium& medium) const;

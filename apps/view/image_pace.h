@@ -41,7 +41,7 @@ class AdaptiveResolution {
   void took(double milliseconds);
 
  private:
-  static constexpr std::size_t kFirstStep = 4;
+  static constexpr std::size_t kFirstStep = 1;
 
   bool all_;
   std::size_t step_;  ///< index into the numbers of voxels

@@ -174,13 +174,13 @@ std::unique_ptr<ScatteringGrid> ScatteringSolver::solveOrders(const Lighting& li
 std::unique_ptr<ScatteringGrid> ScatteringSolver::solveAllOrders(const Lighting& lighting, const Progress& progress) {
   double reference = 0.0;
   std::unique_ptr<ScatteringGrid> coarse;
-  for (std::size_t level = media_.size(); level-- > 0;) {
+  for (std::size_t level = media_.size(); level-- > level_;) {
     auto grid = std::make_unique<ScatteringGrid>(device_, media_[level], lighting);
     if (coarse) grid->startFrom(*coarse);
     Gmres gmres(*grid, progress);
     // The norm of a vector grows with the root of the number of cells.
     const double scale = coarse ? std::sqrt(double(grid->cells()) / double(coarse->cells())) : 0.0;
-    const double first = gmres.solve(scale * reference, level > 0 ? kCoarseTolerance : kScatteringTolerance);
+    const double first = gmres.solve(scale * reference, level > level_ ? kCoarseTolerance : kScatteringTolerance);
     reference = coarse ? scale * reference : first;
     facts_.sets = gmres.sets();
     facts_.work += gmres.sets() * double(grid->cells()) / double(medium().grid().count());
@@ -190,9 +190,11 @@ std::unique_ptr<ScatteringGrid> ScatteringSolver::solveAllOrders(const Lighting&
   return coarse;
 }
 
-void ScatteringSolver::solve(const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress) {
-  if (solved_ && isSameLight(*solved_, lighting)) return;
+void ScatteringSolver::solve(const Lighting& lighting, int coarseness, std::vector<StageTime>& times, const Progress& progress) {
+  const std::size_t level = std::min(std::size_t(coarseness), media_.size() - 1);
+  if (solved_ && level == level_ && isSameLight(*solved_, lighting)) return;
   solved_.reset();
+  level_ = level;
   const StageTimer timer(times, "scattering");
   facts_ = {.cells = medium().grid().cells, .edge = medium().grid().edge};
   const bool isSolved = lighting.scattering == kAllOrders;

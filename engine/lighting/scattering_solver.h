@@ -34,9 +34,9 @@ class ScatteringSolver {
  public:
   ScatteringSolver(const Device& device, ScatteringMedium medium);
 
-  /// Solves for this light, unless it is that of the last call; blocks. The light's attenuation does not matter. Fails with
-  /// ErrorKind::OutOfMemory; after an exception nothing is solved.
-  void solve(const Lighting& lighting, std::vector<StageTime>& times, const Progress& progress);
+  /// Solves for this light, on cells whose edge is `coarseness` times doubled, unless that was done by the last call; blocks. The light's
+  /// attenuation does not matter. Fails with ErrorKind::OutOfMemory; after an exception nothing is solved.
+  void solve(const Lighting& lighting, int coarseness, std::vector<StageTime>& times, const Progress& progress);
   /// Changes with each solution.
   std::uint64_t version() const { return version_; }
 
@@ -44,7 +44,8 @@ class ScatteringSolver {
   const TexelView& texels() const { return texels_; }
   /// For look-ups at positions in an index space, which `toMedium` takes to that of the medium.
   shader::ScatteredGrid onDevice(const glm::dmat4& toMedium = glm::dmat4(1.0)) const;
-  const ScatteringMedium& medium() const { return media_.front(); }
+  /// In the cells of the last solution.
+  const ScatteringMedium& medium() const { return media_[level_]; }
   /// deltaScaleOf() the light.
   const glm::dvec3& deltaScale() const { return deltaScale_; }
   /// The solution on the host. Waits.
@@ -61,6 +62,7 @@ class ScatteringSolver {
   const Device& device_;
   std::vector<ScatteringMedium> media_;  ///< the medium, and the same in cells of twice the edge, again and again
   std::optional<Lighting> solved_;
+  std::size_t level_ = 0;  ///< number of the medium on which it was solved
   std::uint64_t version_ = 0;
   ScatteringFacts facts_;
   double brightest_ = 0.0;

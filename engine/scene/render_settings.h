@@ -68,6 +68,8 @@ struct FrameSettings {
   bool depth = false;  ///< whether to compute Image::depth
   /// If empty, every voxel sends out its colour without lighting.
   std::optional<Lighting> lighting = std::nullopt;
+  /// Light that is scattered any number of times is solved on cells whose edge is so many times doubled, for drafts.
+  int scatteringCoarseness = 0;
   /// Where rays end, of the image's size; only gathered. Null if there is none.
   std::shared_ptr<const Holdout> holdout = nullptr;
 

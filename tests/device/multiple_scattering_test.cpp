@@ -17,7 +17,7 @@ class MultipleScatteringTest : public SplatTest {
     std::vector<StageTime> times;
     ScatteringSolver own(device(), ScatteringMedium(volume, classification));
     ScatteringSolver& used = solver != nullptr ? *solver : own;
-    used.solve(lighting, times, {});
+    used.solve(lighting, 0, times, {});
     const ScatteredField found = used.download(), expected = referenceScattering(used.medium(), lighting, 1e-6);
     double worst = 0.0;
     for (std::size_t i = 0; i < expected.mean.size(); ++i) worst = std::max(worst, glm::length(found.mean[i] - expected.mean[i]));
@@ -74,17 +74,41 @@ TEST_F(MultipleScatteringTest, TheSameLightHasTheSameBits) {
   ScatteringSolver solver(device(), ScatteringMedium(cloud, white));
   std::vector<StageTime> times;
   Lighting lighting{.lights = {{.place = {1.0, 0.4, 0.2}}}, .scattering = kAllOrders};
-  solver.solve(lighting, times, {});
+  solver.solve(lighting, 0, times, {});
   const ScatteredField first = solver.download();
   const std::uint64_t version = solver.version();
-  solver.solve(lighting, times, {});
+  solver.solve(lighting, 0, times, {});
   EXPECT_EQ(solver.version(), version);
   Lighting other = lighting;
   other.lights[0].place = {-1.0, 0.3, 0.5};
-  solver.solve(other, times, {});
+  solver.solve(other, 0, times, {});
   EXPECT_NE(solver.download().mean, first.mean);
-  solver.solve(lighting, times, {});
+  solver.solve(lighting, 0, times, {});
   EXPECT_EQ(solver.download().mean, first.mean);
+}
+
+TEST_F(MultipleScatteringTest, ADraftsLightIsNearThatOfTheWholeImage) {
+  const Volume cloud = makeProcedural("cloud", 40);
+  ScatteringSolver solver(device(), ScatteringMedium(cloud, {.densityScale = 20.0, .albedo = glm::vec3(0.9f)}));
+  std::vector<StageTime> times;
+  const Lighting lighting{.lights = {{.place = {1.0, 0.4, 0.2}}}, .ambient = glm::dvec3(0.2), .scattering = kAllOrders};
+  const auto solved = [&](int coarseness) {
+    solver.solve(lighting, coarseness, times, {});
+    return solver.download();
+  };
+  const auto meanOf = [](const ScatteredField& field) {
+    glm::dvec3 sum(0.0);
+    for (const glm::dvec3& light : field.mean) sum += light;
+    return sum / double(field.mean.size());
+  };
+  const ScatteredField whole = solved(0), draft = solved(1);
+  EXPECT_EQ(draft.edge, 2 * whole.edge);
+  EXPECT_EQ(draft.cells, (whole.cells + 1) / 2);
+  EXPECT_NEAR(meanOf(draft).g / meanOf(whole).g, 1.0, 0.05);
+  EXPECT_EQ(solved(0).mean, whole.mean);
+  EXPECT_EQ(solver.medium().grid().edge, whole.edge);
+  solved(1000);
+  EXPECT_LE(solver.medium().grid().count(), 512u) << "on the fewest cells that there are";
 }
 
 /// Thick and white: the equation's spectral radius is nearly 1.
@@ -93,7 +117,7 @@ TEST_F(MultipleScatteringTest, AThickWhiteCloudTakesTheWorkOfTwelveFineSets) {
   for (const double scale : {1.0, 20.0, 80.0}) {
     ScatteringSolver solver(device(), ScatteringMedium(cloud, {.densityScale = scale, .albedo = glm::vec3(0.999f)}));
     std::vector<StageTime> times;
-    solver.solve({.lights = {{.place = {1.0, 0.4, 0.2}}}, .scattering = kAllOrders}, times, {});
+    solver.solve({.lights = {{.place = {1.0, 0.4, 0.2}}}, .scattering = kAllOrders}, 0, times, {});
     EXPECT_LE(solver.facts().residual, kScatteringTolerance);
     EXPECT_LE(solver.facts().work, 12.0) << scale;
   }
