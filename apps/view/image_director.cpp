@@ -16,6 +16,7 @@ namespace {
 constexpr double kQuickMilliseconds = 45.0;          // that a whole image may take while something moves
 constexpr std::chrono::milliseconds kNotQuick{150};  // after which one that was quick before is no longer
 constexpr std::chrono::milliseconds kStill{120};     // before better images are begun
+constexpr int kFirstVoxels = 48;                     // along the longest edge, in the first image of a file
 
 const char* nameOf(Purpose purpose) {
   switch (purpose) {
@@ -130,7 +131,7 @@ void ImageDirector::askOfChange(const ViewState& state) {
   const bool moves = !state.changed && wholeRevision_ == revision_ && state.diagnosis.shown == Shown::Image;
   if (moves && state.latest && state.latest->request.purpose != Purpose::Move) movePace_.beginFrom(wholeTime_);
   const AdaptiveResolution& pace = moves ? movePace_ : editPace_;
-  askedVoxels_ = pace.voxelsAlongEdge();
+  askedVoxels_ = state.camera || moves ? pace.voxelsAlongEdge() : kFirstVoxels;
   RenderThread& thread = askedVoxels_ == kAllVoxels ? whole_ : quick_;
   thread.ask(request(state, moves ? Purpose::Move : Purpose::Edit, askedVoxels_, pace.scale()));
 }

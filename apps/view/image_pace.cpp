@@ -13,7 +13,7 @@ constexpr std::chrono::milliseconds kPause{500}, kSpan{2000};
 /// Beside the window's own frames, 15 images a second on two cores.
 constexpr double kMilliseconds = 36.0;
 /// Where is a threshold? Fewer voxels than these do not say, so that slower images have to do.
-constexpr std::array kVoxels{kAllVoxels, 128, 96, 64};
+constexpr std::array kVoxels{kAllVoxels, 128, 96};
 constexpr double kMinScale = 0.1, kFirstScale = 0.5;
 /// Where voxels cost more than pixels: beyond these there are fewer or more of them.
 constexpr double kCoarsensBelow = 0.35, kRefinesAbove = 0.95;

@@ -46,7 +46,7 @@ TEST(AdaptiveResolution, ComesToImagesThatAreQuickEnoughAndStays) {
         changes += pace.voxelsAlongEdge() != before;
       }
       EXPECT_LE(changes, 4) << splats << " " << pixels;
-      EXPECT_TRUE(pace.voxelsAlongEdge() == 64 || timeOf(pace, splats, pixels) < 60.0)
+      EXPECT_TRUE(pace.voxelsAlongEdge() == 96 || timeOf(pace, splats, pixels) < 60.0)
           << splats << " " << pixels << " " << pace.voxelsAlongEdge();
     }
 }
@@ -54,7 +54,7 @@ TEST(AdaptiveResolution, ComesToImagesThatAreQuickEnoughAndStays) {
 TEST(AdaptiveResolution, IsAsFineAsTimeAllows) {
   AdaptiveResolution pace(AdaptiveResolution::Voxels::Fewer);
   for (int i = 0; i < 20; ++i) pace.took(500.0);
-  EXPECT_EQ(pace.voxelsAlongEdge(), 64) << "fewer do not show what is edited";
+  EXPECT_EQ(pace.voxelsAlongEdge(), 96) << "fewer do not show what is edited";
   for (int i = 0; i < 2000; ++i) pace.took(timeOf(pace, 2.0, 10.0));
   EXPECT_EQ(pace.voxelsAlongEdge(), 128);
   EXPECT_EQ(pace.scale(), 1.0);
