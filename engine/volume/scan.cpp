@@ -346,6 +346,7 @@ bool drawsAir(const Volume& volume, const TransferFunction& function) {
   constexpr double kNearlyAll = 0.8, kLeastOpacity = 0.01;
   if (!looksLikeScan(volume)) return false;
   const Classification automatic{.transferFunction = scanTransferFunction(volume)}, given{.transferFunction = function};
+  if (classify(automatic, volume.minimum).extinction > 0.0) return false;  // what surrounds the rest is brighter than that
   const std::vector<float> sides = valuesOnSides(volume);
   const std::size_t step = sides.size() / kMostSamples + 1;
   std::size_t samples = 0, drawn = 0;

@@ -62,8 +62,8 @@ struct IsoSurface {
   bool operator==(const IsoSurface&) const = default;
 };
 
-/// Whether a transfer function draws the air around what was scanned: nearly all values on the box's sides are of one class, of which
-/// scanTransferFunction() draws nothing.
+/// Whether a transfer function draws the air around what was scanned: nearly all values on the box's sides are of the lowest class, of
+/// which scanTransferFunction() draws nothing.
 bool drawsAir(const Volume& volume, const TransferFunction& function);
 
 /// Opaque within a hundredth of a voxel from the surface's value on.

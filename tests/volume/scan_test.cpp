@@ -155,6 +155,7 @@ TEST(Scan, AFunctionOfOtherValuesDrawsTheAir) {
   EXPECT_FALSE(draws(makeVolume({32, 32, 32}, glm::dmat4(1.0), [](int x, int y, int z) { return float((x * 7 + y * 5 + z * 3) % 100); }),
                      -100.0f, 100.0f))
       << "without air, what is on the sides is meant";
+  EXPECT_FALSE(draws(nested(1.0f, 1.0f, 1.0f, -0.5f), 0.0f, 1.0f)) << "dark things in bright ones";
 }
 
 TEST(Scan, TransferFunctionLeavesOutliersAside) {
