@@ -11,8 +11,8 @@ layout(local_size_x = kScatteringThreads) in;
 layout(scalar, push_constant) uniform Push { ScatteringCollectPush push; };
 layout(binding = 0, scalar) readonly restrict buffer Directions { SweepDirection directions[]; };
 layout(binding = 1) uniform textureBuffer light;  // by direction, channel and cell
-layout(binding = 2) uniform textureBuffer before;  // the vectors
-layout(binding = 3, scalar) writeonly restrict buffer Vectors { float vectors[]; };
+layout(binding = 2) uniform textureBuffer before;  // the vectors, which the next binding writes: a thread reads what no other one writes
+layout(binding = 3, scalar) writeonly buffer Vectors { float vectors[]; };
 
 void main() {
   const int cell = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));

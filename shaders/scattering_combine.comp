@@ -6,8 +6,8 @@
 
 layout(local_size_x = kScatteringThreads) in;
 layout(scalar, push_constant) uniform Push { ScatteringCombinePush push; };
-layout(binding = 0) uniform textureBuffer before;  // the vectors
-layout(binding = 1, scalar) writeonly restrict buffer Vectors { float vectors[]; };
+layout(binding = 0) uniform textureBuffer before;  // the vectors, which the next binding writes: a thread reads what no other one writes
+layout(binding = 1, scalar) writeonly buffer Vectors { float vectors[]; };
 
 void main() {
   const int i = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));

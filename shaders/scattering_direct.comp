@@ -32,7 +32,7 @@ void main() {
   const ivec3 first = push.ratio * ivec3(number % push.cells.x, number / push.cells.x % push.cells.y, number / (push.cells.x * push.cells.y));
   vec3 sums[4] = vec3[](vec3(0.0), vec3(0.0), vec3(0.0), vec3(0.0));
   float weight = 0.0;
-  // All places of parallel rays have the same.
+  // Parallel rays have the same face in all six places; read once, as lavapipe reads buffers lane by lane.
   const FaceRays parallel = light.fans[0];
   for (int part = 0; part < push.ratio * push.ratio * push.ratio; ++part) {
     const ivec3 cell = first + ivec3(part % push.ratio, part / push.ratio % push.ratio, part / (push.ratio * push.ratio));

@@ -1,6 +1,6 @@
 #version 460
-// Scalar products of a vector with others, in a sum for each thread, which the host adds up: on lavapipe a barrier costs more than all of
-// that.
+// Scalar products of a vector with others: each thread writes its part of every sum, and the host adds the parts in a fixed order. Sums of
+// workgroups would need barriers, which cost lavapipe more than the products.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "scattering_interface.h"

@@ -27,7 +27,7 @@ void main() {
       if (push.from >= 0) light += texelFetch(vectors, push.from * planes * push.count + place).x;
       if (push.direct >= 0) light += texelFetch(direct, place).x;
       source[channel] = texelFetch(medium, (push.scattering + channel) * push.count + cell).x * light;
-      if (push.emission >= 0 && moment == 0) 
+      if (push.emission >= 0 && moment == 0)
         source[channel] += texelFetch(medium, (push.emission + channel) * push.count + cell).x;
     }
     imageStore(sources, moment * push.count + cell, source);

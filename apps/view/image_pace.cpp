@@ -12,7 +12,8 @@ constexpr std::chrono::milliseconds kPause{500}, kSpan{2000};
 
 /// Beside the window's own frames, 15 images a second on two cores.
 constexpr double kMilliseconds = 36.0;
-/// Where is a threshold? Fewer voxels than these do not say, so that slower images have to do.
+/// Along the longest edge. With fewer voxels the image of an edited transfer function does not show where its threshold lies, so that slower
+/// images are accepted instead.
 constexpr std::array kVoxels{kAllVoxels, 128, 96};
 constexpr double kMinScale = 0.1, kFirstScale = 0.5;
 /// Where voxels cost more than pixels: beyond these there are fewer or more of them.
