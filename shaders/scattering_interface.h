@@ -52,15 +52,17 @@ struct ScatteringSourcePush {
 // scattering_sweep.comp
 struct ScatteringSweepPush {
   ivec3 cells;
+  int firstDirection;  // of the batch
   int hasSky;
   float flux;  // factor of the flux in the light that is scattered
 };
 
 // scattering_collect.comp
 struct ScatteringCollectPush {
-  int count;       // cells
-  int directions;  // of the sweeps before
-  int from, to;    // vectors: to = ofFrom * from + ofSum * (sum over all directions)
+  int count;                       // cells
+  int firstDirection, directions;  // of the batch, whose light is added to the sum in vector `to`, which begins with direction 0
+  int isLast;                      // whether it is the last batch: to = ofFrom * from + ofSum * (sum over all directions)
+  int from, to;                    // vectors
   float ofFrom, ofSum;
 };
 

@@ -16,11 +16,11 @@ layout(scalar, push_constant) uniform Push { ScatteringSweepPush push; };
 layout(binding = 0) uniform textureBuffer medium;   // whose first planes are extinctions
 layout(binding = 1) uniform textureBuffer sources;  // by moment and cell
 layout(binding = 2, scalar) readonly restrict buffer Directions { SweepDirection directions[]; };
-layout(binding = 3, scalar) writeonly restrict buffer Light { float light[]; };  // by direction, channel and cell
+layout(binding = 3, scalar) writeonly restrict buffer Light { float light[]; };  // by direction of the batch, channel and cell
 
 void main() {
   const int number = int(gl_LocalInvocationID.x + kScatteringThreads * (gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x));
-  const SweepDirection direction = directions[int(gl_WorkGroupID.z)];
+  const SweepDirection direction = directions[push.firstDirection + int(gl_WorkGroupID.z)];
   const ivec3 axes = direction.step.z != 0 ? ivec3(0, 1, 2) : direction.step.y != 0 ? ivec3(0, 2, 1) : ivec3(1, 2, 0);
   const ivec2 sides = ivec2(push.cells[axes.x], push.cells[axes.y]);
   if (number >= sides.x * sides.y) return;

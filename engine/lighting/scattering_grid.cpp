@@ -50,14 +50,22 @@ std::pair<Buffer, TexelView> makeFloats(const Device& device, std::size_t values
   return {std::move(buffer), std::move(view)};
 }
 
+/// How many directions are swept at once, whose light has so many values each. It takes at most a small part of the device's memory, and
+/// is swept at once where there is much.
+int batchOf(const Device& device, std::uint64_t values) {
+  constexpr std::uint64_t kPartOfMemory = 16;
+  return int(std::clamp<std::uint64_t>(device.memoryBytes() / kPartOfMemory / (values * sizeof(float)), 1, kDirections));
+}
+
 }  // namespace
 
-std::uint64_t ScatteringGrid::bytes(glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting& lighting) {
+std::uint64_t ScatteringGrid::bytes(const Device& device, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting& lighting) {
   constexpr std::uint64_t kChannels = 3;
   const std::size_t cells = ScatteringMedium::gridOf(dimensions).count();
   const std::uint64_t planes = kChannels * (lighting.phaseG != 0.0 ? 4 : 1), medium = 3 * kChannels;
   // 1 + 1/8 + 1/64 + ... = 8/7: with all coarser grids.
-  const std::uint64_t solving = cells * sizeof(float) * (planes * (shader::kMaxBasis + 3) + medium + kChannels * kDirections) * 8 / 7;
+  const std::uint64_t swept = kChannels * std::uint64_t(batchOf(device, kChannels * cells));
+  const std::uint64_t solving = cells * sizeof(float) * (planes * (shader::kMaxBasis + 3) + medium + swept) * 8 / 7;
   const CellGrid direct = ScatteringMedium::directGridOf(dimensions);
   std::uint64_t rays = 0;
   for (const Light& light : lighting.lights) rays = std::max(rays, denseRayBytes(direct.cells, directSource(light, indexToWorld, direct)));
@@ -113,7 +121,9 @@ ScatteringGrid::ScatteringGrid(const Device& device, const ScatteringMedium& med
   sources_ = Buffer(device, std::size_t(moments_) * count_ * sizeof(glm::vec4), MemoryUse::Device, "scattering sources",
                     VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
   sourceTexels_ = TexelView(device, sources_);
-  std::tie(light_, lightTexels_) = makeFloats(device, directions_.size() * std::size_t(channels_) * count_, "light of directions");
+  const std::size_t values = std::size_t(channels_) * count_;
+  batch_ = batchOf(device, values);
+  std::tie(light_, lightTexels_) = makeFloats(device, std::size_t(batch_) * values, "light of directions");
   sums_ = makeBuffer(device, std::size_t(shader::kMaxBasis + 2) * std::size_t(shader::kDotSums), "scattering sums", MemoryUse::Readback);
   Commands commands(device);
   commands.beginPass("scattering");
@@ -210,18 +220,25 @@ void ScatteringGrid::sweep(const Sweep& wanted, const Progress& progress) {
   const glm::ivec3 cells = medium_.grid().cells;
   const std::uint64_t lines = std::max({std::uint64_t(cells.x) * std::uint64_t(cells.y), std::uint64_t(cells.x) * std::uint64_t(cells.z),
                                         std::uint64_t(cells.y) * std::uint64_t(cells.z)});
-  commands.dispatchLinear(sweepPass, sweepBindings,
-                          shader::ScatteringSweepPush{.cells = cells, .hasSky = wanted.sky && hasSky_ ? 1 : 0, .flux = float(flux_)}, lines,
-                          kDirections);
-  commands.barrier(kComputeStage, kComputeStage);
-  commands.dispatchLinear(collectPass, collectBindings,
-                          shader::ScatteringCollectPush{.count = int(count_),
-                                                        .directions = kDirections,
-                                                        .from = wanted.from,
-                                                        .to = wanted.to,
-                                                        .ofFrom = wanted.ofFrom,
-                                                        .ofSum = wanted.ofSum},
-                          count_);
+  for (int first = 0; first < kDirections; first += batch_) {
+    const int directions = std::min(batch_, kDirections - first);
+    if (first > 0) commands.barrier(kComputeStage, kComputeStage);
+    commands.dispatchLinear(
+        sweepPass, sweepBindings,
+        shader::ScatteringSweepPush{.cells = cells, .firstDirection = first, .hasSky = wanted.sky && hasSky_ ? 1 : 0, .flux = float(flux_)},
+        lines, std::uint32_t(directions));
+    commands.barrier(kComputeStage, kComputeStage);
+    commands.dispatchLinear(collectPass, collectBindings,
+                            shader::ScatteringCollectPush{.count = int(count_),
+                                                          .firstDirection = first,
+                                                          .directions = directions,
+                                                          .isLast = first + directions == kDirections ? 1 : 0,
+                                                          .from = wanted.from,
+                                                          .to = wanted.to,
+                                                          .ofFrom = wanted.ofFrom,
+                                                          .ofSum = wanted.ofSum},
+                            count_);
+  }
   commands.submitAndWait(progress);
 }
 

@@ -24,7 +24,7 @@ class ScatteringGrid {
   /// Computes the direct light of all cells. The solution is 0. `medium` must outlive the grid.
   ScatteringGrid(const Device& device, const ScatteringMedium& medium, const Lighting& lighting);
   /// Bytes of device memory that the grids of a solution take at most while it is computed.
-  static std::uint64_t bytes(glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting& lighting);
+  static std::uint64_t bytes(const Device& device, glm::ivec3 dimensions, const glm::dmat4& indexToWorld, const Lighting& lighting);
 
   std::size_t cells() const { return count_; }
   /// Interpolates the solution from one on cells of twice the edge.
@@ -73,13 +73,14 @@ class ScatteringGrid {
   std::vector<QuadratureDirection> directions_;
   const std::size_t count_;
   int channels_, moments_;
+  int batch_ = 1;        ///< directions that are swept at once
   double flux_ = 0.0;    ///< 3 g
   bool tinted_ = false;  ///< whether each channel has its own extinction
   bool hasSky_ = false, emits_ = false, lit_ = false;
   glm::dvec3 depthScale_{1.0};  ///< factor of optical depths towards lights
   Buffer mediumPlanes_, direct_, vectors_, sweepDirections_, sums_;
   Buffer sources_;  ///< vec4 by moment and cell
-  Buffer light_;    ///< by direction, channel and cell
+  Buffer light_;    ///< by direction of the batch, channel and cell
   TexelView mediumTexels_, directTexels_, vectorTexels_, sourceTexels_, lightTexels_;
 };
 

@@ -154,8 +154,8 @@ bool hasScatteredLight(const Lighting& lighting, bool emits) {
   return lighting.hasIndirectLight() || emits;
 }
 
-std::uint64_t scatteringBytes(const Volume& outline, const Lighting& lighting) {
-  return ScatteringGrid::bytes(outline.dimensions, outline.indexToWorld, lighting);
+std::uint64_t scatteringBytes(const Device& device, const Volume& outline, const Lighting& lighting) {
+  return ScatteringGrid::bytes(device, outline.dimensions, outline.indexToWorld, lighting);
 }
 
 ScatteringSolver::ScatteringSolver(const Device& device, ScatteringMedium medium) : device_(device) {

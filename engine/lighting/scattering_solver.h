@@ -75,6 +75,6 @@ class ScatteringSolver {
 /// emitted.
 bool hasScatteredLight(const Lighting& lighting, bool emits);
 /// Bytes of device memory that a solution takes at most while it is computed.
-std::uint64_t scatteringBytes(const Volume& outline, const Lighting& lighting);
+std::uint64_t scatteringBytes(const Device& device, const Volume& outline, const Lighting& lighting);
 
 }  // namespace freevoxels
