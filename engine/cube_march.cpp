@@ -71,13 +71,13 @@ SampleRectangle inRows(const SampleRectangle& rectangle, glm::ivec2 rows) {
 
 /// The codes of a light in the order of a box's bricks.
 std::vector<std::uint16_t> codesOf(const SweptLight& light, const GatherVolume& inBox, glm::ivec3 firstBrick) {
-  std::vector<std::uint16_t> codes(std::size_t(inBox.brickCount()) * shader::kGatherBrickBlocks, 0);
-  const glm::ivec3 size = inBox.cells().bricks.front();
+  std::vector<std::uint16_t> codes(std::size_t(inBox.bricks().count()) * shader::kGatherBrickBlocks, 0);
+  const glm::ivec3 size = inBox.bricks().cells(0);
   std::size_t cell = 0;
   for (glm::ivec3 brick(0); brick.z < size.z; ++brick.z)
     for (brick.y = 0; brick.y < size.y; ++brick.y)
       for (brick.x = 0; brick.x < size.x; ++brick.x, ++cell)
-        if (const std::uint32_t number = inBox.cells().numbers[cell]; number != 0)
+        if (const std::uint32_t number = inBox.bricks().numbers()[cell]; number != 0)
           light.read(firstBrick + brick,
                      std::span(codes).subspan(std::size_t(number) * shader::kGatherBrickBlocks, shader::kGatherBrickBlocks));
   return codes;

@@ -10,9 +10,9 @@ DeviceScene::DeviceScene(const Device& onDevice, const Volume& volume, const Cla
                          std::vector<StageTime> times, const Progress& progress)
     : device(onDevice),
       hostVolume(volume),
-      classification(classes),
       tableSettings(settings),
       buildTimes(std::move(times)),
+      classification(classes),
       built(buildVolume(device, hostVolume, classification, buildTimes, progress)) {}
 
 VolumeMemory DeviceScene::memory() const {
@@ -20,6 +20,25 @@ VolumeMemory DeviceScene::memory() const {
   const std::vector<std::uint64_t> nothing(volume.hierarchy.levels.size(), 0);
   return volumeMemory(volume.hierarchy, built.hasBlocks() ? volume.stored : nothing, tableSettings.directions, storedKinds(volume),
                       sweepStyle(device));
+}
+
+bool DeviceScene::reclassify(const Classification& other) {
+  std::optional<DeviceScalars>& scalars = built.volume.scalarBricks;
+  if (!scalars || !other.isPost(hostVolume) ||
+      !scalars->reclassify(device, hostVolume, *other.transferFunction, kStoredDepth * built.volume.voxelSize))
+    return false;
+  classification = other;
+  if (built.hasBlocks()) {
+    DeviceScalars kept = std::move(*scalars);
+    built = {.volume = makeDeviceVolume(device, hostVolume, classification)};
+    built.volume.scalarBricks = std::move(kept);
+  }
+  occupiedCells_.reset();
+  table_.reset();
+  largestDepths_.clear();
+  if (lights_) lights_->outdate();
+  scatteringIsOld_ = scattering_.has_value();
+  return true;
 }
 
 const BuiltVolume& DeviceScene::builtWithBlocks(const Progress& progress) {
@@ -30,7 +49,12 @@ const BuiltVolume& DeviceScene::builtWithBlocks(const Progress& progress) {
 const OccupiedCells& DeviceScene::occupiedCells() {
   if (!occupiedCells_) {
     const StageTimer timer(frameTimes, "cells");
-    occupiedCells_.emplace(device, hostVolume, classification);
+    if (built.volume.scalarBricks) {
+      if (!scalarRanges_) scalarRanges_ = scalarRanges(hostVolume, OccupiedCells::kEdge);
+      occupiedCells_.emplace(device, metCells(*scalarRanges_, hostVolume, *classification.transferFunction));
+    } else {
+      occupiedCells_.emplace(device, metCells(hostVolume, classification, OccupiedCells::kEdge));
+    }
   }
   return *occupiedCells_;
 }
@@ -59,10 +83,11 @@ const AttenuationTable& DeviceScene::table(bool withLevels, const Progress& prog
 void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress) {
   // First, as a solution takes memory while it is computed.
   scatters_ = hasScatteredLight(*settings.lighting, built.volume.hasEmission());
-  if (scatters_) {
-    if (!scattering_) {
+  if (scatters_ && !(scatteringIsOld_ && settings.allowsOldLight)) {
+    if (!scattering_ || scatteringIsOld_) {
       const StageTimer timer(frameTimes, "scattering medium");
       scattering_.emplace(device, ScatteringMedium(hostVolume, classification));
+      scatteringIsOld_ = false;
     }
     scattering_->solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
   }

@@ -31,14 +31,17 @@ class DeviceScene {
 
   const Device& device;
   const Volume& hostVolume;
-  const Classification classification;
   const TableSettings tableSettings;
   std::vector<StageTime> buildTimes;  ///< of what is kept for all frames
   std::vector<StageTime> frameTimes;  ///< of the last frame, with what was made for it
+  Classification classification;
   BuiltVolume built;
   TargetPool targetPool;
 
   VolumeMemory memory() const;
+  /// Goes on with another classification where that keeps the codes of the volume's scalars, so that all that does not depend on it is
+  /// kept. Otherwise returns false, and nothing changes.
+  bool reclassify(const Classification& other);
   /// The volume with its classified blocks, which are made if they do not exist yet.
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
   /// Where the volume has something to see.
@@ -59,11 +62,13 @@ class DeviceScene {
   void submit(Commands& commands, const Progress& progress = {});
 
  private:
+  std::optional<CellRanges> scalarRanges_;  ///< of cells of OccupiedCells::kEdge; only with scalars
   std::optional<OccupiedCells> occupiedCells_;
   std::optional<AttenuationTable> table_;
   std::vector<double> largestDepths_;
   std::optional<LightPass> lights_;
   std::optional<ScatteringSolver> scattering_;
+  bool scatteringIsOld_ = false;  ///< whether it was solved for another classification
   bool scatters_ = false;  ///< whether the last frame that was lit has scattered light
 };
 

@@ -13,15 +13,26 @@ namespace freevoxels {
 
 void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress) {
   try {
-    if (!volume_) volume_.emplace(scene_.device, scene_.classification, scene_.built, scene_.occupiedCells().met(), scene_.frameTimes);
+    const Cells& met = scene_.occupiedCells().met();
+    if (!volume_)
+      volume_.emplace(scene_.device, scene_.classification, scene_.built, met, scene_.frameTimes);
+    else if (isOld_)
+      volume_->reclassify(met, scene_.frameTimes);
+    isOld_ = false;
     volume_->prepare(shading);
     GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0, settings.holdout != nullptr,
                              settings.isProjected());
+  } catch (...) {
+    volume_.reset();
+    throw;
+  }
+  const GatherVolume::State before = volume_->state();
+  try {
     Commands commands(scene_.device);
     volume_->record(commands, shading);
     if (!commands.empty()) scene_.submit(commands, progress);
   } catch (...) {
-    volume_.reset();
+    volume_->restore(before);
     throw;
   }
 }

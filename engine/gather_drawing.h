@@ -33,6 +33,9 @@ class GatherDrawing {
   /// The sums of a part's rows of samples. Waits for the device.
   FixedSums shares(const Frame& frame, const SharePart& part, const Progress& progress);
 
+  /// Says that DeviceScene::reclassify() has changed the scene.
+  void reclassify() { isOld_ = true; }
+
   /// After the first frame.
   const GatherVolume& volume() const { return *volume_; }
   GatherPass& pass() { return *pass_; }
@@ -42,6 +45,7 @@ class GatherDrawing {
 
   DeviceScene& scene_;
   std::optional<GatherVolume> volume_;
+  bool isOld_ = false;  ///< whether volume_ has not followed the scene's classification yet
   std::optional<GatherPass> pass_;
 };
 

@@ -100,6 +100,12 @@ CubeDrawing& Renderer::cubes() {
   return *cubes_;
 }
 
+bool Renderer::reclassify(const Classification& classification) {
+  if (!state_ || !state_->reclassify(classification)) return false;
+  classification_ = classification;
+  return true;
+}
+
 bool Renderer::surelyFits(const FrameSettings& settings) const {
   if (merged_ || CubeDrawing::whyNot(settings)) return true;
   const Volume& outline = source_->outline();

@@ -48,6 +48,12 @@ class Renderer {
   Renderer(const Device&, Volume&&, const Classification&, const TableSettings&, const Progress& = {}) = delete;
   ~Renderer();
 
+  /// Goes on with another transfer function for the next frames, which are the same to the bit as those of a new renderer. What does not
+  /// depend on the function is kept: scalars, their gradients and their quads. Only for a single volume that is on the device as a whole
+  /// and is classified after interpolation, before and after, with the same codes of scalars, which functions far outside of the volume's
+  /// range change. Otherwise returns false, and nothing changes.
+  bool reclassify(const Classification& classification);
+
   /// Draws a frame and waits for it. `progress` is called about every 50 ms, and may abandon the frame by an exception, which
   /// is passed on; the next frame makes again what was not complete.
   Image render(const Camera& camera, const FrameSettings& settings, const Progress& progress = {});
@@ -99,7 +105,7 @@ class Renderer {
 
   const Device& device_;
   const std::shared_ptr<const VolumeSource> source_;
-  const Classification classification_;
+  Classification classification_;
   const TableSettings table_;
   std::shared_ptr<const Volume> volume_;  ///< the whole volume on the host, as long as frames are drawn of it; longer than `state_`
   std::unique_ptr<State> state_;          ///< and on the device; null where it does not fit

@@ -14,6 +14,13 @@ struct Renderer::State {
   SplatDrawing splats{scene};
   TargetReadback colorReadback, distanceReadback;
 
+  bool reclassify(const Classification& other) {
+    if (!scene.reclassify(other)) return false;
+    gather.reclassify();
+    splats.reset();
+    return true;
+  }
+
   /// Records the image of a frame, which is complete after submit().
   std::shared_ptr<const FrameTargets> record(Commands& commands, const Camera& camera, const FrameSettings& settings,
                                              const Progress& progress) {

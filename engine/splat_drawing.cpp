@@ -16,6 +16,15 @@ bool isCut(const FrameConstants& constants) {
 
 }  // namespace
 
+void SplatDrawing::reset() {
+  forget();
+  shares_.reset();
+  sort_.reset();
+  resolve_.reset();
+  splats_.reset();
+  cut_.reset();
+}
+
 void SplatDrawing::preparePasses(const FrameSettings& settings) {
   if (!resolve_ || !splats_->draws(settings)) {
     resolve_.reset();

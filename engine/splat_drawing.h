@@ -43,6 +43,8 @@ class SplatDrawing {
   /// called.
   void complete() { drawn_ = recorded_; }
   void forget() { recorded_ = drawn_ = std::nullopt; }
+  /// Drops what is kept of the scene's blocks.
+  void reset();
   /// What became of the blocks; nothing without a frame. Reads back.
   CutCounts counts() const;
   /// The blocks that were drawn; null without a frame.

@@ -20,7 +20,7 @@ class KeptRenderer {
 
   /// Whether the renderer that is there draws frames of this scene. `source`: the scene's volume, or a coarser one.
   bool isFor(const std::shared_ptr<const VolumeSource>& source, const SceneDescription& description, const Scene& scene) const;
-  /// The renderer for such frames, made anew where isFor() is false.
+  /// The renderer for such frames. Where isFor() is false, the one that is there is reclassified if that is possible, or another is made.
   Renderer& get(const std::shared_ptr<const VolumeSource>& source, const SceneDescription& description, const Scene& scene,
                 const Progress& progress);
   /// Gives the renderer and its volume up, so that there are never two of them.
@@ -34,9 +34,12 @@ class KeptRenderer {
   std::vector<StageTime> takeTimings();
 
  private:
+  bool mayReclassify(const std::shared_ptr<const VolumeSource>& source, const SceneDescription& description, const Scene& scene) const;
+
   const Device& device_;
   std::shared_ptr<const VolumeSource> source_;
   std::string text_;  ///< rendererText for which the renderer was made
+  Classification classification_;  ///< of the renderer
   std::unique_ptr<Renderer> renderer_;
   bool isNew_ = false;  ///< whether it has drawn no complete frame
 };

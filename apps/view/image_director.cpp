@@ -18,9 +18,26 @@ constexpr std::chrono::milliseconds kNotQuick{150};  // after which one that was
 constexpr std::chrono::milliseconds kStill{120};     // before better images are begun
 constexpr int kFirstVoxels = 48;                     // along the longest edge, in the first image of a file
 
+/// Whether a transfer function, or an isosurface, is all that the scenes of a volume differ in, apart from the camera.
+bool equalButFunction(const SceneDescription& a, const SceneDescription& b) {
+  const auto withoutFunction = [](SceneDescription scene) {
+    ClassificationDescription& classification = scene.classification;
+    if (classification.transferFunction) classification.transferFunction = kFunctionOfWindow;
+    if (classification.iso) classification.iso = IsoSurface();
+    classification.window.reset();
+    classification.opacity.reset();
+    classification.invert = false;
+    scene.camera = {};
+    scene.output = {};
+    return scene;
+  };
+  return withoutFunction(a) == withoutFunction(b);
+}
+
 const char* nameOf(Purpose purpose) {
   switch (purpose) {
     case Purpose::Move:
+    case Purpose::Classify:
     case Purpose::Edit:
       return "quick";
     case Purpose::Refine:
@@ -74,9 +91,16 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
   const ImageRequest& request = result.drawn->request;
   const double time = result.drawn->milliseconds;
   // The first image of a movement also makes what the others keep.
-  if (request.purpose == Purpose::Move && state.latest && state.latest->request.purpose == Purpose::Move) movePace_.took(time);
+  if ((request.purpose == Purpose::Move || request.purpose == Purpose::Classify) && state.latest &&
+      state.latest->request.purpose == request.purpose)
+    movePace_.took(time);
   if (request.purpose == Purpose::Edit) editPace_.took(time);
-  if (&thread == &whole_) wholeRevision_ = request.revision;
+  if (&thread == &whole_) {
+    wholeRevision_ = request.revision;
+    classified_.reset();
+    if (const Scene& scene = result.drawn->scene; scene.added.empty() && scene.classification.isPost(*scene.volume))
+      classified_ = request.scene;
+  }
   const bool isWhole = request.purpose == Purpose::Whole;
   if (isWhole) {
     drawsWhole_ = false;
@@ -125,15 +149,18 @@ void ImageDirector::askOfChange(const ViewState& state) {
     askedOfWhole_ = lastRequest_;
     return whole_.ask(request(state, Purpose::Whole, kAllVoxels, 1.0));
   }
+  const bool showsImage = state.diagnosis.shown == Shown::Image;
+  const bool moves = !state.changed && wholeRevision_ == revision_ && showsImage;
+  const bool classifies = state.changed && classified_ && showsImage && equalButFunction(*classified_, state.scene);
+  const Purpose purpose = moves ? Purpose::Move : classifies ? Purpose::Classify : Purpose::Edit;
   // A whole image in full size is given up for what is wanted now.
-  if (state.changed || drawsWhole_ || drawsLayers_) whole_.abandon();
+  if (purpose == Purpose::Edit || drawsWhole_ || drawsLayers_) whole_.abandon();
   drawsWhole_ = drawsLayers_ = false;
-  const bool moves = !state.changed && wholeRevision_ == revision_ && state.diagnosis.shown == Shown::Image;
-  if (moves && state.latest && state.latest->request.purpose != Purpose::Move) movePace_.beginFrom(wholeTime_);
-  const AdaptiveResolution& pace = moves ? movePace_ : editPace_;
+  if (purpose != Purpose::Edit && state.latest && state.latest->request.purpose != purpose) movePace_.beginFrom(wholeTime_);
+  const AdaptiveResolution& pace = purpose == Purpose::Edit ? editPace_ : movePace_;
   askedVoxels_ = state.camera || moves ? pace.voxelsAlongEdge() : kFirstVoxels;
   RenderThread& thread = askedVoxels_ == kAllVoxels ? whole_ : quick_;
-  thread.ask(request(state, moves ? Purpose::Move : Purpose::Edit, askedVoxels_, pace.scale()));
+  thread.ask(request(state, purpose, askedVoxels_, pace.scale()));
 }
 
 /// Not two images at once, as they share the processor.

@@ -55,6 +55,7 @@ class ImageDirector {
   std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
   std::uint64_t revision_ = 1, wholeRevision_ = 0;  ///< of everything but the camera; that of the last image of all voxels
   Clock::time_point lastChange_;
+  /// Of images of all voxels, and of others.
   AdaptiveResolution movePace_{AdaptiveResolution::Voxels::All}, editPace_{AdaptiveResolution::Voxels::Fewer};
   ImageRate rate_;
   Purpose lastPurpose_ = Purpose::Whole;
@@ -63,6 +64,8 @@ class ImageDirector {
   bool wholeIsQuick_ = false, drawsWhole_ = false;  ///< drawsWhole_: a whole image in full size was asked for, and has not come
   double wholeTime_ = 0.0;                          ///< of the last whole image, ms
   SceneDescription asked_;                          ///< of the last request
+  /// Of the last image of all voxels, where these are classified by a transfer function after interpolation.
+  std::optional<SceneDescription> classified_;
   std::optional<Colors> edited_;                    ///< what was edited last, if it is nothing but colours
   bool drawsLayers_ = false, isMixed_ = false;      ///< isMixed_: ViewState::latest was mixed of layers, and nobody knows yet
   std::uint64_t layersAskedOf_ = 0;                 ///< the request of whose image layers were asked for

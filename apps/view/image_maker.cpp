@@ -178,7 +178,8 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
     settings.gather().mostSamplesAcrossPixel = 1.0;
     settings.gather().sampleTolerance = 0.0f;
     settings.lod *= float(request.scale);
-    if (request.purpose != Purpose::Move) settings.scatteringCoarseness = 1;
+    settings.allowsOldLight = request.purpose == Purpose::Move || request.purpose == Purpose::Classify;
+    if (request.purpose == Purpose::Edit || request.purpose == Purpose::Refine) settings.scatteringCoarseness = 1;
   }
   if (request.layers) {
     if (auto layers = ColorLayers::make(renderer, device_, request.scene, drawn.scene, settings, *request.layers, progress))

@@ -40,9 +40,9 @@ class VolumeCache {
   std::shared_ptr<const FilmView> film_;
 };
 
-/// What an image is drawn for: while the camera moves, while something else changes, as a step from there to the whole image, or
-/// as that, of all voxels and pixels.
-enum class Purpose { Move, Edit, Refine, Whole };
+/// What an image is drawn for: while the camera moves; while nothing but the transfer function changes besides, with the light that there
+/// was before; while something else changes; as a step from there to the whole image; or as that, of all voxels and pixels.
+enum class Purpose { Move, Classify, Edit, Refine, Whole };
 
 /// The input of an image, to be copied to another thread.
 struct ImageRequest {

@@ -350,11 +350,13 @@ std::vector<std::string> functionWarnings(const SceneDescription& description) {
 }
 
 std::string rendererText(const SceneDescription& description, const Scene& scene) {
+  SceneDescription resolved = description.resolved(scene);
+  if (scene.classification.transferFunction) resolved.classification = {};
   const TableSettings table = description.method.table();
   std::string surfaces;  // which depend on the light's description, too
   for (const SceneVolume& added : scene.added) surfaces += fmt::format("{} ", added.surface.value_or(-1.0));
-  return surfaces + fmt::format("{}table={} {} {} {}", textOf(description.resolved(scene), {"classification", "emission", "volumes"}),
-                                int(table.directions), int(table.code), int(table.filter), table.pathLengthCorrection);
+  return surfaces + fmt::format("{}table={} {} {} {}", textOf(resolved, {"classification", "emission", "volumes"}), int(table.directions),
+                                int(table.code), int(table.filter), table.pathLengthCorrection);
 }
 
 }  // namespace freevoxels

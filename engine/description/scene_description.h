@@ -379,7 +379,8 @@ bool channelsAddUp(const SceneDescription& scene);
 /// Fails for layers (Aovs::lights, Aovs::channels) of light or channels that the scene has not, or of light that is no sum over channels.
 void checkLayers(const SceneDescription& scene, const Aovs& aovs);
 
-/// A text of everything that a Renderer of the scene depends on, except for its volume: scenes with equal text can share one.
+/// A text of everything that a Renderer of the scene depends on, except for its volume and the transfer function of that: scenes with equal
+/// text can share one that is reclassified.
 std::string rendererText(const SceneDescription& description, const Scene& scene);
 
 /// "128", or "2048x2048x512" of one that is no cube.

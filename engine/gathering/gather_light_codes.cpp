@@ -35,21 +35,21 @@ bool GatherVolume::lightsSamples(const Lighting* lighting) {
          (lighting->lights.size() <= std::size_t(shader::kMaxSampleLights) && lighting->attenuation == LightAttenuation::Exact);
 }
 
-/// Keeps the codes until the lights move.
-void GatherVolume::prepareSampled(const Lighting* lighting) {
-  isSampled_ = lighting != nullptr;
-  const std::vector<Light> lights = lighting != nullptr ? lighting->lights : std::vector<Light>();
-  const bool stand = std::ranges::equal(lights, sampled_,
-                                        [](const Light& a, const Light& b) { return a.place == b.place && a.atInfinity == b.atInfinity; });
-  if (!stand) dropLightCodes();
+/// Keeps the codes until the lights are swept again. `shading` is null where light is not evaluated at samples.
+void GatherVolume::prepareSampled(const Shading* shading) {
+  isSampled_ = shading != nullptr;
+  const std::vector<Light> lights = shading != nullptr ? shading->lighting->lights : std::vector<Light>();
+  const std::uint64_t version = !lights.empty() && surroundings_ == nullptr ? shading->lights->version() : 0;
+  if (!standAlike(lights, sampled_) || version != lightVersion_) dropLightCodes();
   sampled_ = lights;
-  const std::uint64_t bytes = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
+  lightVersion_ = version;
+  const std::uint64_t bytes = std::uint64_t(capacity_) * shader::kGatherBrickBlocks * sizeof(std::uint16_t);
   for (int slot = 0; slot < shader::kMaxSampleLights; ++slot) {
     Buffer& codes = lightCodes_[std::size_t(slot)];
     if (slot >= sampleLights())
       codes = {};
-    else if (codes.bytes() == 0)
-      codes = Buffer(device_, bytes, MemoryUse::Device, "codes of light");
+    else if (codes.bytes() < bytes)
+      codes = Buffer(device_, bytes, MemoryUse::Device, kLightCodes, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
     if (surroundings_ == nullptr || slot >= sampleLights()) continue;
     const std::vector<std::uint16_t> given = surroundings_->codes(slot, *this);
     upload(device_, codes, std::as_bytes(std::span(given)));
@@ -57,31 +57,27 @@ void GatherVolume::prepareSampled(const Lighting* lighting) {
 }
 
 void GatherVolume::dropLightCodes() {
-  lightLevels_ = 0;
-  for (Quads& quads : quads_) quads.lightLevels = 0;
+  lightMade_ = {};
+  for (Quads& quads : quads_) quads.lightMade = {};
 }
 
 /// Computes the codes of all blocks of bricks, occupied or not.
 void GatherVolume::recordLightCodes(Commands& commands, const Shading& shading) {
-  if (!lacksLevels(lightLevels_)) return;
-  if (surroundings_ != nullptr) {  // whose codes are uploaded
-    lightLevels_ |= wantedLevels_;
-    return;
-  }
+  if (!bricks_.lack(lightMade_, wantedLevels_)) return;
+  const bool isFirst = lightMade_.levels == 0;
+  std::vector<GatherBricks::Range> missing;
+  bricks_.forEachMissing(lightMade_, wantedLevels_, [&](const GatherBricks::Range& range) { missing.push_back(range); });
+  if (surroundings_ != nullptr) return;  // whose codes are uploaded
   commands.beginPass("light depths");
-  if (lightLevels_ == 0)
+  if (isFirst)
     for (int slot = 0; slot < sampleLights(); ++slot) commands.clear(lightCodes_[std::size_t(slot)]);  // of the empty brick
-  for (int level = 0; level <= built_.volume.hierarchy.top(); ++level) {
-    if (!lacksLevel(lightLevels_, level) || firstBricks_[std::size_t(level)] == firstBricks_[std::size_t(level) + 1]) continue;
-    recordLightDepths(commands, shading, level);
-  }
+  for (const GatherBricks::Range& range : missing) recordLightDepths(commands, shading, range);
   commands.barrier(kComputeStage, kComputeStage);
-  recordShadows(commands, shading);
-  lightLevels_ |= wantedLevels_;
+  recordShadows(commands, shading, missing);
 }
 
 /// Adds the depths of other volumes, one after the other.
-void GatherVolume::recordShadows(Commands& commands, const Shading& shading) {
+void GatherVolume::recordShadows(Commands& commands, const Shading& shading, std::span<const GatherBricks::Range> ranges) {
   const DeviceVolume& volume = built_.volume;
   for (const ShadowingVolume& other : shading.others) {
     const auto number = std::size_t(&other - shading.others.data());
@@ -89,44 +85,44 @@ void GatherVolume::recordShadows(Commands& commands, const Shading& shading) {
     const glm::dmat4 toOther = glm::inverse(other.indexToWorld) * volume.indexToWorld;
     commands.update(others_[number],
                     shader::OtherVolume{.toOther = glm::dmat3(toOther), .offset = glm::dvec3(toOther[3]), .dimensions = other.dimensions});
-    for (int level = 0; level <= volume.hierarchy.top(); ++level)
-      if (lacksLevel(lightLevels_, level)) recordOtherDepths(commands, other, others_[number], level);
+    for (const GatherBricks::Range& range : ranges) recordOtherDepths(commands, other, others_[number], range);
     commands.barrier(kComputeStage, kComputeStage);
   }
 }
 
-void GatherVolume::recordOtherDepths(Commands& commands, const ShadowingVolume& other, const Buffer& constants, int level) {
-  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
-  for (int light = 0; light < sampleLights() && count > 0; ++light) {
+void GatherVolume::recordOtherDepths(Commands& commands, const ShadowingVolume& other, const Buffer& constants,
+                                     const GatherBricks::Range& range) {
+  for (int light = 0; light < sampleLights(); ++light) {
     const RaySweep& rays = other.lights->rays(light);
     const std::optional<TexelView>& texels = rays.depthTexels();
     const Pipeline pass =
         makeComputePipeline(device_, shaders::other_depths, {other.scalars, texels.has_value(), sampled_[std::size_t(light)].atInfinity});
-    const std::array<Binding, 4> bindings{&brickCellTexels_, &constants, &other.lights->lights(), texels ? &*texels : &brickCellTexels_};
-    const shader::OtherDepthsPush push{.firstBrick = first,
-                                       .count = count,
+    const TexelView& places = bricks_.placeTexels();
+    const std::array<Binding, 4> bindings{&places, &constants, &other.lights->lights(), texels ? &*texels : &places};
+    const shader::OtherDepthsPush push{.firstBrick = range.first,
+                                       .count = range.count(),
                                        .light = light,
-                                       .edge = 1 << level,
+                                       .edge = 1 << range.level,
                                        .voxels = built_.volume.layout.dimensions,
                                        .depths = addressWords(lightCodes_[std::size_t(light)].address()),
                                        .rays = addressWords(rays.depths().address())};
-    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(range.count()) * shader::kBrickQuadsThreads);
   }
 }
 
-void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading, int level) {
+void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading, const GatherBricks::Range& range) {
   const DeviceVolume& volume = built_.volume;
-  const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
+  const int level = range.level;
   for (int light = 0; light < sampleLights(); ++light) {
     const RaySweep& rays = shading.lights->rays(light);
     const std::optional<TexelView>& texels = rays.depthTexels();
     const bool rows = level == 0 && sampled_[std::size_t(light)].atInfinity && rays.fans()[0].axis != 0;
     const Pipeline pass = makeComputePipeline(device_, shaders::light_depths, {hasScalars(), texels.has_value(), level == 0, rows});
-    const std::array<Binding, 4> bindings{&brickCellTexels_, &volume.occupancyTexels, &shading.lights->lights(),
-                                          texels ? &*texels : &brickCellTexels_};
+    const TexelView& places = bricks_.placeTexels();
+    const std::array<Binding, 4> bindings{&places, &volume.occupancyTexels, &shading.lights->lights(), texels ? &*texels : &places};
     const shader::LightDepthsPush push{.level = volume.onDevice(level),
-                                       .firstBrick = first,
-                                       .count = count,
+                                       .firstBrick = range.first,
+                                       .count = range.count(),
                                        .light = light,
                                        .edge = 1 << level,
                                        .voxels = volume.layout.dimensions,
@@ -134,62 +130,63 @@ void GatherVolume::recordLightDepths(Commands& commands, const Shading& shading,
                                        .extinction = addressWords(volume.extinction.address()),
                                        .depths = addressWords(lightCodes_[std::size_t(light)].address()),
                                        .rays = addressWords(rays.depths().address())};
-    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(range.count()) * shader::kBrickQuadsThreads);
   }
 }
 
-void GatherVolume::recordGradients(Commands& commands) {
-  if (!lacksLevels(gradientLevels_)) return;
-  if (gradients_.bytes() == 0) {
-    const std::uint64_t blocks = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
-    gradients_ = Buffer(device_, blocks * sizeof(std::uint32_t), MemoryUse::Device, "gradients of surfaces",
-                        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+void GatherVolume::viewGradients() {
+  gradientTexels_ = {};
+  if (gradients_.bytes() > 0)
     gradientTexels_ = TexelView(device_, gradients_, VK_FORMAT_R32_UINT, inPieces() ? sizeof(std::uint32_t) : VK_WHOLE_SIZE);
+}
+
+void GatherVolume::recordGradients(Commands& commands) {
+  if (!bricks_.lack(gradientsMade_, wantedLevels_)) return;
+  const std::uint64_t bytes = std::uint64_t(capacity_) * shader::kGatherBrickBlocks * sizeof(std::uint32_t);
+  if (gradients_.bytes() < bytes) {
+    gradients_ = Buffer(device_, bytes, MemoryUse::Device, kGradients,
+                        VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+    viewGradients();
   }
   commands.beginPass("surface gradients");
-  if (gradientLevels_ == 0) commands.clear(gradients_);  // of the empty brick
+  if (gradientsMade_.levels == 0) commands.clear(gradients_);  // of the empty brick
   const DeviceVolume& volume = built_.volume;
   const TexelView* const codes = hasScalars() && volume.scalarBricks->codeTexels ? &*volume.scalarBricks->codeTexels : nullptr;
-  const std::array<Binding, 5> bindings{&brickCellTexels_, &volume.occupancyTexels, codes != nullptr ? codes : &brickCellTexels_,
-                                        codes != nullptr ? &*volume.scalarBricks->numberTexels : &brickCellTexels_, &gradientTexels_};
-  for (int level = 0; level <= volume.hierarchy.top(); ++level) {
-    const std::uint32_t first = firstBricks_[std::size_t(level)], count = firstBricks_[std::size_t(level) + 1] - first;
-    if (!lacksLevel(gradientLevels_, level) || count == 0) continue;
-    const auto scalars = scalarCodes(level);
+  const TexelView& places = bricks_.placeTexels();
+  const std::array<Binding, 5> bindings{&places, &volume.occupancyTexels, codes != nullptr ? codes : &places,
+                                        codes != nullptr ? &*volume.scalarBricks->numberTexels : &places, &gradientTexels_};
+  bricks_.forEachMissing(gradientsMade_, wantedLevels_, [&](const GatherBricks::Range& range) {
+    const auto scalars = scalarCodes(range.level);
     const Pipeline pass = makeComputePipeline(device_, shaders::surface_gradients, {scalars.has_value(), !inPieces(), codes != nullptr});
-    const shader::SurfaceGradientsPush push{.level = volume.onDevice(level),
-                                            .firstBrick = first,
-                                            .count = count,
+    const shader::SurfaceGradientsPush push{.level = volume.onDevice(range.level),
+                                            .firstBrick = range.first,
+                                            .count = range.count(),
                                             .extinction = addressWords(volume.extinction.address()),
                                             .gradients = addressWords(gradients_.address()),
                                             .scalars = scalars.value_or(shader::CodeBricks())};
-    commands.dispatchLinear(pass, bindings, push, std::uint64_t(count) * shader::kBrickQuadsThreads);
-  }
+    commands.dispatchLinear(pass, bindings, push, std::uint64_t(range.count()) * shader::kBrickQuadsThreads);
+  });
   commands.barrier(kComputeStage, kComputeStage);
-  gradientLevels_ |= wantedLevels_;
 }
 
 void GatherVolume::recordLightQuads(Commands& commands, int axis) {
   Quads& quads = quads_[std::size_t(axis)];
-  if (!lacksLevels(quads.lightLevels)) return;
+  if (!bricks_.lack(quads.lightMade, wantedLevels_)) return;
   commands.beginPass("brick quads");
-  for (std::size_t slot = 0; slot < std::size_t(sampleLights()); ++slot) {
-    const auto make = [&](int level, std::uint32_t first, std::uint32_t end) {
-      const shader::GatherLevel& cells = levels_[std::size_t(level)];
+  const auto make = [&](const GatherBricks::Range& range) {
+    const shader::GatherLevel& cells = bricks_.levels()[std::size_t(range.level)];
+    for (std::size_t slot = 0; slot < std::size_t(sampleLights()); ++slot) {
       const shader::CodeBricks codes{
-          .numbers = addressWords(brickNumbers_.address() + VkDeviceAddress(cells.firstCell) * sizeof(std::uint32_t)),
+          .numbers = addressWords(bricks_.numberBuffer().address() + VkDeviceAddress(cells.firstCell) * sizeof(std::uint32_t)),
           .codes = addressWords(lightCodes_[slot].address()),
           .corner = glm::ivec3(0),
           .cells = {cells.cellStrides.x, cells.cellStrides.y / cells.cellStrides.x, 0}};
-      recordBricks(commands, axis, level, first, end, codes, quads.light[slot], false);
-    };
-    if (quads.lightLevels == 0) make(0, 0, 1);
-    for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
-      if (lacksLevel(quads.lightLevels, level))
-        make(level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1]);
-  }
+      recordBricks(commands, axis, range, codes, quads.light[slot], false);
+    }
+  };
+  if (quads.lightMade.levels == 0) make(kEmptyBrick);
+  bricks_.forEachMissing(quads.lightMade, wantedLevels_, make);
   commands.barrier(kComputeStage, kComputeStage);
-  quads.lightLevels |= wantedLevels_;
 }
 
 /// From the volume's index space to that of the cells of scattered light.
@@ -238,10 +235,10 @@ std::vector<GatherLight> GatherVolume::downloadLight() const {
   std::vector<std::vector<std::uint32_t>> codes;
   for (int slot = 0; slot < sampleLights(); ++slot) codes.push_back(words(lightCodes_[std::size_t(slot)]));
   const std::vector<std::uint32_t> gradients = hasSurfaces() ? words(gradients_) : std::vector<std::uint32_t>();
-  std::vector<GatherLight> levels(levels_.size());
-  for (std::size_t level = 0; level < levels_.size(); ++level) {
-    if (((wantedLevels_ & lightLevels_) >> level & 1u) == 0 || codes.empty()) continue;
-    const shader::GatherLevel& cells = levels_[level];
+  std::vector<GatherLight> levels(bricks_.levels().size());
+  for (std::size_t level = 0; level < levels.size(); ++level) {
+    if (((wantedLevels_ & lightMade_.levels) >> level & 1u) == 0 || codes.empty()) continue;
+    const shader::GatherLevel& cells = bricks_.levels()[level];
     GatherLight& light = levels[level];
     light.depths.resize(std::size_t(sampleLights()));
     glm::ivec3 block;
@@ -250,7 +247,7 @@ std::vector<GatherLight> GatherVolume::downloadLight() const {
         for (block.x = 0; block.x < cells.dimensions.x; ++block.x) {
           const glm::ivec3 cell = block / shader::kGatherBrickEdge, local = block % shader::kGatherBrickEdge;
           const std::uint32_t brick =
-              cells_.numbers[std::size_t(cells.firstCell + cell.x + cell.y * cells.cellStrides.x + cell.z * cells.cellStrides.y)];
+              bricks_.numbers()[std::size_t(cells.firstCell + cell.x + cell.y * cells.cellStrides.x + cell.z * cells.cellStrides.y)];
           const std::size_t index = ((std::size_t(brick) * shader::kGatherBrickEdge + std::size_t(local.z)) * shader::kGatherBrickEdge +
                                      std::size_t(local.y)) * shader::kGatherBrickEdge + std::size_t(local.x);
           for (std::size_t slot = 0; slot < codes.size(); ++slot) {

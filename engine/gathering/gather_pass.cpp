@@ -130,9 +130,15 @@ void GatherPass::begin(Commands& commands, const shader::GatherFrame& frame) {
 
 std::vector<Binding> GatherPass::gatherBindings(const GatherVolume& volume, int axis, const Dispatch& target) const {
   const GatherVolume::Quads& quads = volume.quads(axis);
-  std::vector<Binding> bindings{target.frame,        &volume.brickNumbers(),       &quads.medium.texels,      &quads.source.texels,
-                                &quads.extra.texels, &gathered_.colorEnergyTexels, &gathered_.distanceTexels, &volume.transferTable(),
-                                &volume.skips()};
+  std::vector<Binding> bindings{target.frame,
+                                &volume.bricks().numberTexels(),
+                                &quads.medium.texels,
+                                &quads.source.texels,
+                                &quads.extra.texels,
+                                &gathered_.colorEnergyTexels,
+                                &gathered_.distanceTexels,
+                                &volume.transferTable(),
+                                &volume.bricks().skips()};
   for (const GatherVolume::QuadStore& light : quads.light) bindings.emplace_back(&light.texels);
   bindings.emplace_back(volume.hasScattered() ? &volume.scatteredTexels() : &noLightTexels_);
   bindings.emplace_back(&volume.gradients());

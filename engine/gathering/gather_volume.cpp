@@ -42,6 +42,8 @@ bool dependsOnView(const Lighting& lighting) {
   return lighting.phaseG != 0.0 || lighting.surface > 0.0;
 }
 
+constexpr const char* kMediumQuads = "medium quads";
+
 /// World length of a voxel's layer along its major axis, averaged over all directions: about 1.2 voxel edges.
 float meanLayer(const DeviceVolume& volume) {
   return float(1.2 * volume.voxelSize);
@@ -55,67 +57,85 @@ GatherVolume::GatherVolume(const Device& device, const Classification& classific
       classification_(classification),
       built_(built),
       surroundings_(surroundings),
-      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame") {
-  makeBricks(met, times);
-  const std::uint32_t bricks = firstBricks_.back();
-  const std::uint64_t quads = std::uint64_t(bricks) * shader::kGatherBrickBlocks;
-  inPieces_ = quads > device.limits().maxTexelBufferElements || quads * sizeof(glm::uvec4) > device.maximumAllocation();
-  bricksPerPiece_ = inPieces_ ? 1u << shader::kPieceBricksLog2 : bricks;
-  if (bricks > std::uint64_t(bricksPerPiece_) * shader::kMaxPieces)
+      frame_(device, sizeof(shader::SetupFrame), MemoryUse::Device, "shading frame"),
+      bricks_(device, built.volume.hierarchy, hasScalars()) {
+  include(met, times);
+}
+
+/// Finds the bricks. With more of them than there is room for, room is made for some more than these.
+void GatherVolume::include(const Cells& met, std::vector<StageTime>& times) {
+  const StageTimer timer(times, "bricks");
+  bricks_.include(met);
+  if (bricks_.count() <= capacity_) return;
+  capacity_ = capacity_ == 0 ? bricks_.count() : bricks_.count() + bricks_.count() / 4;
+  const std::uint64_t quads = std::uint64_t(capacity_) * shader::kGatherBrickBlocks;
+  inPieces_ = quads > device_.limits().maxTexelBufferElements || quads * sizeof(glm::uvec4) > device_.maximumAllocation();
+  bricksPerPiece_ = inPieces_ ? 1u << shader::kPieceBricksLog2 : capacity_;
+  if (capacity_ > std::uint64_t(bricksPerPiece_) * shader::kMaxPieces)
     fail(ErrorKind::OutOfMemory, "the gather needs {} quads of voxels, more than the {} that it can number: use {}", quads,
          std::uint64_t(bricksPerPiece_) * shader::kMaxPieces * shader::kGatherBrickBlocks, Parameter("draw", "splats"));
 }
 
-/// Finds the cells of the octree that are bricks, and those that rays skip. A position in a cell stays for
-/// one more edge in that cell and its next neighbours along the positive axes, so these decide. The light of
-/// a surface is looked up 2.5 blocks outside of it, so bricks extend one cell farther, on all sides.
-void GatherVolume::makeBricks(const Cells& occupied, std::vector<StageTime>& times) {
-  const StageTimer timer(times, "bricks");
-  const HierarchyLayout& hierarchy = built_.volume.hierarchy;
-  const int top = hierarchy.top(), finest = std::min(shader::kSkipLevels, top);
-  Cells cells = occupied;                               // one cell if the volume is smaller than a cell
-  std::vector<Cells> met, around{spread(cells, 0, 1)};  // by level, starting above the finest
-  for (int level = finest; level <= top; ++level) {
-    met.push_back(spread(cells, 0, 1));
-    around.push_back(coarserCells(spread(cells, -1, 1)));
-    // Blocks above interpolated scalars are means of voxels that are classified with half the way to their neighbours.
-    cells = coarserCells(level == finest && hasScalars() ? spread(cells, -1, 0) : cells);
+void GatherVolume::reclassify(const Cells& met, std::vector<StageTime>& times) {
+  FV_CHECK_EQ(hasScalars() && surroundings_ == nullptr, true);
+  const std::uint32_t before = capacity_, bricks = bricks_.count();
+  const bool wasInPieces = inPieces_;
+  include(met, times);
+  if (inPieces_ || wasInPieces) {
+    quads_ = {};
+    lightCodes_ = {};
+    gradients_ = {};
+    gradientTexels_ = {};
+    shadedLevels_ = 0;
+    lightMade_ = gradientsMade_ = {};
+    return;
   }
+  sources_ = {};  // of as many blocks as there were
+  extras_ = {};
+  // What is made of voxels' codes stays. Blocks above them are others, and their quads, too.
+  shadedLevels_ = 0;
+  for (GatherBricks::Made* const made : {&lightMade_, &gradientsMade_, &quads_[0].made, &quads_[1].made, &quads_[2].made})
+    made->levels &= 1;
+  // The light at the sides of a brick is that of its neighbours, which may be new.
+  for (Quads& quads : quads_) {
+    quads.lightMade.levels &= 1;
+    if (bricks_.count() > bricks) quads.lightMade = {};
+  }
+  if (capacity_ > before) enlarge();
+}
 
-  std::vector<std::uint32_t>& numbers = cells_.numbers;
-  std::vector<std::uint8_t> skips;
-  constexpr int kOutside = 1 << 29;
-  std::vector<glm::ivec4> bricks{glm::ivec4(kOutside)};  // the empty one
-  for (int number = 0; number <= top; ++number) {
-    const int brickLevel = std::min(number + shader::kBrickLevels, top), skipLevel = std::min(number + shader::kSkipLevels, top);
-    const Cells& brickCells = around[std::size_t(brickLevel - finest)];
-    cells_.met.push_back(met[std::size_t(skipLevel - finest)]);
-    cells_.bricks.push_back(brickCells.dimensions);
-    cells_.cellsPerBrick.push_back(1 << (brickLevel - skipLevel));
-    const Cells skipCells = groupsToSkip(cells_.met.back());
-    levels_.push_back({.dimensions = hierarchy.levels[std::size_t(number)].dimensions,
-                       .firstCell = int(numbers.size()),
-                       .cellStrides = brickCells.strides(),
-                       .firstSkip = int(skips.size()),
-                       .skipStrides = skipCells.strides(),
-                       .lastSkip = skipCells.dimensions - 1});
-    firstBricks_.push_back(std::uint32_t(bricks.size()));
-    glm::ivec3 cell;
-    for (cell.z = 0; cell.z < brickCells.dimensions.z; ++cell.z)
-      for (cell.y = 0; cell.y < brickCells.dimensions.y; ++cell.y)
-        for (cell.x = 0; cell.x < brickCells.dimensions.x; ++cell.x) {
-          const bool isBrick = brickCells.at(cell) != 0;
-          numbers.push_back(isBrick ? std::uint32_t(bricks.size()) : 0);
-          if (isBrick) bricks.emplace_back(cell * shader::kGatherBrickEdge, 0);
-        }
-    skips.insert(skips.end(), skipCells.values.begin(), skipCells.values.end());
+/// Moves what is made of bricks to buffers with room for all of them.
+void GatherVolume::enlarge() {
+  for (Quads& quads : quads_) {
+    if (quads.made.levels == 0) continue;
+    QuadStore larger;
+    larger.pieces.push_back(enlarged(quads.medium.pieces.front(), quads.made, sizeof(glm::uvec2), kMediumQuads));
+    quads.medium = {};
+    if (quads.made.levels == 0) continue;
+    larger.texels = TexelView(device_, larger.pieces.front(), VK_FORMAT_R32G32_UINT);
+    quads.medium = std::move(larger);
   }
-  firstBricks_.push_back(std::uint32_t(bricks.size()));
-  std::tie(brickNumbers_, brickNumberTexels_) =
-      uploadTexels(device_, std::as_bytes(std::span(numbers)), VK_FORMAT_R32_UINT, "brick numbers");
-  std::tie(brickCells_, brickCellTexels_) =
-      uploadTexels(device_, std::as_bytes(std::span(bricks)), VK_FORMAT_R32G32B32A32_UINT, "brick cells");
-  std::tie(skips_, skipTexels_) = uploadTexels(device_, std::as_bytes(std::span(skips)), VK_FORMAT_R8_UINT, "cells to skip");
+  for (Buffer& codes : lightCodes_) codes = enlarged(codes, lightMade_, sizeof(std::uint16_t), kLightCodes);
+  gradients_ = enlarged(gradients_, gradientsMade_, sizeof(std::uint32_t), kGradients);
+  viewGradients();
+}
+
+/// A larger buffer with the bytes of one that is given up. None if it was empty, or if there is not enough memory: what is there is then to
+/// be made again.
+Buffer GatherVolume::enlarged(const Buffer& buffer, GatherBricks::Made& made, std::uint64_t blockBytes, const char* name) const {
+  if (made.levels == 0 || buffer.bytes() == 0) return {};
+  try {
+    Buffer larger(device_, capacity_ * shader::kGatherBrickBlocks * blockBytes, MemoryUse::Device, name,
+                  VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT | VK_BUFFER_USAGE_STORAGE_TEXEL_BUFFER_BIT);
+    Commands commands(device_);
+    commands.copy(buffer, larger, {.srcOffset = 0, .dstOffset = 0, .size = buffer.bytes()});
+    commands.submitAndWait();
+    return larger;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::OutOfMemory) throw;
+    made = {};
+    return {};
+  }
 }
 
 /// Scalars without light need no source terms for voxels.
@@ -191,13 +211,13 @@ void GatherVolume::prepare(const Shading& shading) {
     lighting_ = *shading.lighting;
   else
     lighting_.reset();
-  prepareSampled(samples ? shading.lighting : nullptr);
+  prepareSampled(samples ? &shading : nullptr);
   wantedLevels_ = 0;
   for (int level = shading.frame.detail.finest; level <= shading.frame.detail.coarsest; ++level)
     wantedLevels_ |= 1u << level;
   if (!sameSources || hasEmissionApart() != emissionWasApart) {
     shadedLevels_ = 0;
-    for (Quads& quads : quads_) quads.levels = 0;
+    for (Quads& quads : quads_) quads.made = {};
   }
   makeSources();
   const auto makeRoomForAll = [&] {
@@ -227,7 +247,7 @@ void GatherVolume::dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t 
     Quads& quads = quads_[axis];
     if (axes[axis]) continue;
     kept += quads.bytes();
-    if (quads.levels == 0 || kept > most) quads = {};
+    if (quads.made.levels == 0 || kept > most) quads = {};
   }
 }
 
@@ -240,9 +260,8 @@ std::uint64_t GatherVolume::QuadStore::bytes() const {
 /// A minimal store for quads that are not needed, because a binding needs a buffer.
 GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadBytes, VkFormat format, const char* name) const {
   QuadStore store;
-  const std::uint32_t bricks = firstBricks_.back();
-  for (std::uint32_t first = 0; first == 0 || (needed && first < bricks); first += bricksPerPiece_) {
-    const std::uint64_t quads = std::uint64_t(std::min(bricksPerPiece_, bricks - first)) * shader::kGatherBrickBlocks;
+  for (std::uint32_t first = 0; first == 0 || (needed && first < capacity_); first += bricksPerPiece_) {
+    const std::uint64_t quads = std::uint64_t(std::min(bricksPerPiece_, capacity_ - first)) * shader::kGatherBrickBlocks;
     store.pieces.emplace_back(device_, (needed ? quads : 1) * quadBytes, MemoryUse::Device, name, VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT);
   }
   store.texels = TexelView(device_, store.pieces.front(), format, inPieces_ ? quadBytes : VK_WHOLE_SIZE);
@@ -251,38 +270,67 @@ GatherVolume::QuadStore GatherVolume::makeStore(bool needed, std::uint64_t quadB
 
 /// Reuses the memory of an axis whose quads are out of date, if there is one.
 void GatherVolume::makeRoom(Quads& quads, const std::array<bool, 3>& axes) {
-  const std::uint64_t count = std::uint64_t(firstBricks_.back()) * shader::kGatherBrickBlocks;
-  const auto fits = [&](const Quads& there) {
-    const auto holds = [&](const QuadStore& store, bool needed, std::uint64_t bytes) {
-      return store.bytes() >= (needed ? count : 1) * bytes;
-    };
-    for (std::size_t i = 0; i < there.light.size(); ++i)
-      if (!holds(there.light[i], i < std::size_t(sampleLights()), sizeof(glm::uvec2))) return false;
-    return holds(there.medium, true, sizeof(glm::uvec2)) && holds(there.source, hasColors(), sizeof(glm::uvec4)) &&
-           holds(there.extra, hasTowards() || hasEmissionApart(), sizeof(glm::uvec4));
+  struct Need {
+    QuadStore& store;
+    bool needed;
+    std::uint64_t bytes;
+    VkFormat format;
+    const char* name;
+    GatherBricks::Made& made;
   };
-  if (fits(quads)) return;
-  for (std::size_t other = 0; other < axes.size(); ++other) {
-    if (axes[other] || quads_[other].levels != 0 || !fits(quads_[other])) continue;
+  const auto needsOf = [&](Quads& there) {
+    std::vector<Need> needs{
+        {there.medium, true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, kMediumQuads, there.made},
+        {there.source, hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads", there.made},
+        {there.extra, hasTowards() || hasEmissionApart(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "extra quads", there.made}};
+    for (std::size_t i = 0; i < there.light.size(); ++i)
+      needs.push_back(
+          {there.light[i], i < std::size_t(sampleLights()), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light quads", there.lightMade});
+    return needs;
+  };
+  const std::uint64_t count = std::uint64_t(bricks_.count()) * shader::kGatherBrickBlocks;
+  const auto isMet = [&](const Need& need) { return need.store.bytes() >= (need.needed ? count : 1) * need.bytes; };
+  if (std::ranges::all_of(needsOf(quads), isMet)) return;
+  for (std::size_t other = 0; other < axes.size() && quads.made.levels == 0; ++other) {
+    if (axes[other] || quads_[other].made.levels != 0 || !std::ranges::all_of(needsOf(quads_[other]), isMet)) continue;
     quads = std::exchange(quads_[other], {});
     return;
   }
-  quads = {};  // not both at once
-  quads.medium = makeStore(true, sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "medium quads");
-  quads.source = makeStore(hasColors(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "source quads");
-  quads.extra = makeStore(hasTowards() || hasEmissionApart(), sizeof(glm::uvec4), VK_FORMAT_R32G32B32A32_UINT, "extra quads");
-  for (std::size_t i = 0; i < quads.light.size(); ++i)
-    quads.light[i] = makeStore(i < std::size_t(sampleLights()), sizeof(glm::uvec2), VK_FORMAT_R32G32_UINT, "light quads");
+  for (const Need& need : needsOf(quads)) {
+    if (isMet(need)) continue;
+    need.made = {};
+    need.store = {};  // not both at once
+    need.store = makeStore(need.needed, need.bytes, need.format, need.name);
+  }
 }
 
 void GatherVolume::record(Commands& commands, const Shading& shading) {
-  if (lacksLevels(shadedLevels_)) recordShading(commands, shading);
+  if ((wantedLevels_ & ~shadedLevels_) != 0) recordShading(commands, shading);
   if (sampleLights() > 0) recordLightCodes(commands, shading);
   if (hasSurfaces()) recordGradients(commands);
   for (int axis = 0; axis < 3; ++axis) {
     if (!shading.axes[std::size_t(axis)]) continue;
-    if (lacksLevels(quads_[std::size_t(axis)].levels)) recordQuads(commands, axis);
+    recordQuads(commands, axis);
     if (sampleLights() > 0) recordLightQuads(commands, axis);
+  }
+}
+
+GatherVolume::State GatherVolume::state() const {
+  State state{.shadedLevels = shadedLevels_, .light = lightMade_, .gradients = gradientsMade_, .quads = {}, .lightQuads = {}};
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
+    state.quads[axis] = quads_[axis].made;
+    state.lightQuads[axis] = quads_[axis].lightMade;
+  }
+  return state;
+}
+
+void GatherVolume::restore(const State& before) {
+  shadedLevels_ = before.shadedLevels;
+  lightMade_ = before.light;
+  gradientsMade_ = before.gradients;
+  for (std::size_t axis = 0; axis < quads_.size(); ++axis) {
+    quads_[axis].made = before.quads[axis];
+    quads_[axis].lightMade = before.lightQuads[axis];
   }
 }
 
@@ -293,29 +341,28 @@ std::optional<shader::CodeBricks> GatherVolume::scalarCodes(int level) const {
 
 void GatherVolume::recordQuads(Commands& commands, int axis) {
   Quads& quads = quads_[std::size_t(axis)];
+  if (!bricks_.lack(quads.made, wantedLevels_)) return;
   commands.beginPass("brick quads");
-  if (quads.levels == 0) recordBricks(commands, axis, 0, 0, 1, scalarCodes(0), quads.medium, hasColors());  // the empty one
-  for (int level = 0; level <= built_.volume.hierarchy.top(); ++level)
-    if (lacksLevel(quads.levels, level))
-      recordBricks(commands, axis, level, firstBricks_[std::size_t(level)], firstBricks_[std::size_t(level) + 1],
-                   scalarCodes(level), quads.medium, hasColors() && (lit_ || !scalarCodes(level)));
+  if (quads.made.levels == 0) recordBricks(commands, axis, kEmptyBrick, scalarCodes(0), quads.medium, hasColors());
+  bricks_.forEachMissing(quads.made, wantedLevels_, [&](const GatherBricks::Range& range) {
+    const std::optional<shader::CodeBricks> codes = scalarCodes(range.level);
+    recordBricks(commands, axis, range, codes, quads.medium, hasColors() && (lit_ || !codes));
+  });
   commands.barrier(kComputeStage, kComputeStage);
-  quads.levels |= wantedLevels_;
 }
 
-/// Records the quads of a level's bricks, piece by piece.
-void GatherVolume::recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
+/// Records the quads of bricks, piece by piece.
+void GatherVolume::recordBricks(Commands& commands, int axis, const GatherBricks::Range& range,
                                 const std::optional<shader::CodeBricks>& codes, const QuadStore& medium, bool colored) {
-  if (first == end) return;
   const DeviceVolume& volume = built_.volume;
   const Quads& quads = quads_[std::size_t(axis)];
   const bool extra = (hasTowards() && colored) || (hasEmissionApart() && !codes);
   const Pipeline pass = makeComputePipeline(device_, shaders::brick_quads, {std::uint32_t(axis), extra, colored, codes.has_value()});
-  const std::array<Binding, 2> bindings{&brickCellTexels_, &volume.occupancyTexels};
-  for (std::uint32_t next = first; next < end;) {
+  const std::array<Binding, 2> bindings{&bricks_.placeTexels(), &volume.occupancyTexels};
+  for (std::uint32_t next = range.first; next < range.end;) {
     const std::uint32_t piece = next / bricksPerPiece_;
-    const std::uint32_t bricks = std::min(end, (piece + 1) * bricksPerPiece_) - next;
-    const shader::BrickQuadsPush push{.level = volume.onDevice(level),
+    const std::uint32_t bricks = std::min(range.end, (piece + 1) * bricksPerPiece_) - next;
+    const shader::BrickQuadsPush push{.level = volume.onDevice(range.level),
                                       .firstBrick = next,
                                       .count = bricks,
                                       .firstQuad = next % bricksPerPiece_ * shader::kGatherBrickBlocks,
@@ -337,7 +384,7 @@ void GatherVolume::recordShading(Commands& commands, const Shading& shading) {
   commands.beginPass("shade blocks");
   commands.update(frame_, shading.frame.setup);
   for (int level = 0; level <= volume.hierarchy.top(); ++level)
-    if (lacksLevel(shadedLevels_, level) && shadesLevel(level)) shade(commands, shading, level);
+    if (((wantedLevels_ & ~shadedLevels_) >> level & 1u) != 0 && shadesLevel(level)) shade(commands, shading, level);
   shadedLevels_ |= wantedLevels_;
 }
 
@@ -358,7 +405,7 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
   frame.projectionLayer = hasScalars() ? frame.extinctionUnit * float(classification_.transferFunction->unitDistance) : 0.0f;
   frame.deltaScale = deltaScale_;
   describeLights(frame);
-  for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = levels_[std::size_t(number)];
+  for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = bricks_.levels()[std::size_t(number)];
 }
 
 std::vector<GatherBlocks> GatherVolume::downloadBlocks() const {

@@ -10,11 +10,11 @@
 #include <span>
 
 #include "engine/attenuation/attenuation_table.h"
+#include "engine/gathering/gather_bricks.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/lighting/scattering_solver.h"
 #include "engine/octree/volume_builder.h"
 #include "engine/splatting/frame_constants.h"
-#include "engine/volume/coarse_cells.h"
 #include "shaders/gather_interface.h"
 
 namespace freevoxels {
@@ -47,6 +47,9 @@ class GatherVolume {
   /// ErrorKind::OutOfMemory.
   GatherVolume(const Device& device, const Classification& classification, const BuiltVolume& built, const Cells& met,
                std::vector<StageTime>& times, const SurroundingLight* surroundings = nullptr);
+  /// Goes on with another transfer function, for which the classification and the built volume have changed, but not the codes of its
+  /// scalars, and for which `met` is marked. What does not depend on the function is kept. Only without `surroundings`.
+  void reclassify(const Cells& met, std::vector<StageTime>& times);
 
   /// The input of shading a frame. `lighting` and `lights` are null without lighting.
   struct Shading {
@@ -64,9 +67,18 @@ class GatherVolume {
   static bool lightsSamples(const Lighting* lighting);
   /// Allocates what the frame needs. Fails with ErrorKind::OutOfMemory.
   void prepare(const Shading& shading);
-  /// Records the shading of the blocks that the frame reads, except for those that are still valid. Must be
+  /// What was made for frames.
+  struct State {
+    std::uint32_t shadedLevels;  ///< a bit for each level
+    GatherBricks::Made light, gradients;
+    std::array<GatherBricks::Made, 3> quads, lightQuads;  ///< by axis
+  };
+  /// Records the shading of the blocks that the frame reads, except for those that are still valid, which then counts as made. Must be
   /// called after prepare() with the same arguments.
   void record(Commands& commands, const Shading& shading);
+  State state() const;
+  /// Goes back to the state before a record() whose commands were given up.
+  void restore(const State& before);
 
   /// An array of quads in one or more pieces, with texels unless it is read in pieces.
   struct QuadStore {
@@ -79,8 +91,7 @@ class GatherVolume {
   struct Quads {
     QuadStore medium, source, extra;
     std::array<QuadStore, shader::kMaxSampleLights> light;  ///< codes of light (lightCodes_)
-    std::uint32_t levels = 0;  ///< a bit for each level that exists
-    std::uint32_t lightLevels = 0;
+    GatherBricks::Made made, lightMade;
     std::uint64_t bytes() const;
   };
   /// The blocks of each level that the last frame read as blocks; other levels are empty. For validation and tests. Waits.
@@ -91,19 +102,7 @@ class GatherVolume {
   /// None without such light. Waits.
   std::optional<ScatteredField> downloadScattered() const { return hasScattered() ? std::optional(scattered_->download()) : std::nullopt; }
 
-  /// The bricks and the cells that rays skip, on the host, where parts of the volume are chosen.
-  struct BrickCells {
-    std::vector<std::uint32_t> numbers;  ///< of the bricks, by level and cell (GatherLevel); 0 is the empty brick
-    std::vector<Cells> met;              ///< by level: cells in which, or in whose next neighbours, there is something
-    std::vector<glm::ivec3> bricks;      ///< by level: number of cells that may be bricks along the axes
-    std::vector<int> cellsPerBrick;      ///< by level: cells of `met` along the edge of a brick, 1 or 2
-  };
-  const BrickCells& cells() const { return cells_; }
-  const std::vector<shader::GatherLevel>& levels() const { return levels_; }
-  std::uint32_t brickCount() const { return firstBricks_.back(); }
-
-  const TexelView& skips() const { return skipTexels_; }
-  const TexelView& brickNumbers() const { return brickNumberTexels_; }
+  const GatherBricks& bricks() const { return bricks_; }
   const Quads& quads(int axis) const { return quads_[std::size_t(axis)]; }
   /// Fills in the frame's constants of the volume: the units of stored values, and the levels that it reads.
   void describe(shader::GatherFrame& frame) const;
@@ -130,17 +129,19 @@ class GatherVolume {
   /// Whether quads are read by address, in pieces of shader::kPieceBricksLog2, because a texel buffer or an allocation cannot hold all.
   bool inPieces() const { return inPieces_; }
   /// Packed gradients of blocks; arbitrary texels without surfaces, and if quads are in pieces.
-  const TexelView& gradients() const { return gradientTexels_.handle() == VK_NULL_HANDLE ? brickNumberTexels_ : gradientTexels_; }
+  const TexelView& gradients() const { return gradientTexels_.handle() == VK_NULL_HANDLE ? bricks_.numberTexels() : gradientTexels_; }
   /// TransferTable::texels(); arbitrary texels without scalars.
   const TexelView& transferTable() const;
 
  private:
-  /// Whether the frame reads a level, or this one, that is not among the levels `made`, a bit for each.
-  bool lacksLevels(std::uint32_t made) const { return (wantedLevels_ & ~made) != 0; }
-  bool lacksLevel(std::uint32_t made, int level) const { return ((wantedLevels_ & ~made) >> level & 1u) != 0; }
-  void makeBricks(const Cells& occupied, std::vector<StageTime>& times);
+  static constexpr GatherBricks::Range kEmptyBrick{.level = 0, .first = 0, .end = 1};
+  static constexpr const char *kLightCodes = "codes of light", *kGradients = "gradients of surfaces";
+
+  void include(const Cells& met, std::vector<StageTime>& times);
+  void enlarge();
+  Buffer enlarged(const Buffer& buffer, GatherBricks::Made& made, std::uint64_t blockBytes, const char* name) const;
   void makeSources();
-  void prepareSampled(const Lighting* lighting);
+  void prepareSampled(const Shading* shading);
   void describeLights(shader::GatherFrame& frame) const;
   glm::dmat4 toMedium(const ScatteringSolver& scattered) const;
   void dropOtherAxes(const std::array<bool, 3>& axes, std::uint64_t most);
@@ -153,15 +154,16 @@ class GatherVolume {
   bool shadesLevel(int level) const;
   std::optional<shader::CodeBricks> scalarCodes(int level) const;
   void recordQuads(Commands& commands, int axis);
-  void recordBricks(Commands& commands, int axis, int level, std::uint32_t first, std::uint32_t end,
-                    const std::optional<shader::CodeBricks>& codes, const QuadStore& medium, bool colored);
+  void recordBricks(Commands& commands, int axis, const GatherBricks::Range& range, const std::optional<shader::CodeBricks>& codes,
+                    const QuadStore& medium, bool colored);
   void dropLightCodes();
   void recordLightCodes(Commands& commands, const Shading& shading);
-  void recordLightDepths(Commands& commands, const Shading& shading, int level);
-  void recordShadows(Commands& commands, const Shading& shading);
-  void recordOtherDepths(Commands& commands, const ShadowingVolume& other, const Buffer& constants, int level);
+  void recordLightDepths(Commands& commands, const Shading& shading, const GatherBricks::Range& range);
+  void recordShadows(Commands& commands, const Shading& shading, std::span<const GatherBricks::Range> ranges);
+  void recordOtherDepths(Commands& commands, const ShadowingVolume& other, const Buffer& constants, const GatherBricks::Range& range);
   void recordLightQuads(Commands& commands, int axis);
   void recordGradients(Commands& commands);
+  void viewGradients();
 
   const Device& device_;
   const Classification& classification_;
@@ -169,17 +171,12 @@ class GatherVolume {
   const SurroundingLight* surroundings_;
   Pipeline shadePass_;
   Buffer frame_;  ///< shader::SetupFrame
-  Buffer brickNumbers_;  ///< number of the brick by level and cell; 0 is the empty brick
-  Buffer skips_;         ///< bytes by level and cell: number of groups of slices to skip
-  Buffer brickCells_;    ///< ivec4: each brick's first block
-  Buffer sources_;       ///< by rank: packed source term, extinction as a half
-  Buffer extras_;        ///< by rank: three signed normalised bytes, or packed emission
-  TexelView brickNumberTexels_, skipTexels_, brickCellTexels_;
-  BrickCells cells_;
-  std::vector<shader::GatherLevel> levels_;
-  std::vector<std::uint32_t> firstBricks_;  ///< first brick of each level, and the total number
+  GatherBricks bricks_;
+  std::uint32_t capacity_ = 0;  ///< bricks for which there is room in what is stored by brick
   bool inPieces_ = false;
   std::uint32_t bricksPerPiece_ = 0;
+  Buffer sources_;  ///< by rank: packed source term, extinction as a half
+  Buffer extras_;   ///< by rank: three signed normalised bytes, or packed emission
   std::array<Quads, 3> quads_;
   // What the source terms were made for:
   std::uint32_t shadedLevels_ = 0;  ///< a bit for each level
@@ -195,10 +192,11 @@ class GatherVolume {
   /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light.
   std::array<Buffer, shader::kMaxSampleLights> lightCodes_;
   std::vector<Buffer> others_;  ///< shader::OtherVolume of Shading::others
-  std::uint32_t lightLevels_ = 0;
+  GatherBricks::Made lightMade_;
+  std::uint64_t lightVersion_ = 0;  ///< LightPass::version() of the codes
   Buffer gradients_;  ///< 4 bytes a block, in bricks; empty until surfaces are lit at samples
   TexelView gradientTexels_;  ///< of gradients_; if quads are in pieces of its first word
-  std::uint32_t gradientLevels_ = 0;
+  GatherBricks::Made gradientsMade_;
 };
 
 }  // namespace freevoxels

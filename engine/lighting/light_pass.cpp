@@ -54,63 +54,76 @@ RayMemory lightRayMemory(const DeviceVolume& volume, const Lighting& lighting) {
   return rayMemory(volume.layout.dimensions, sourcesOf(lighting, volume));
 }
 
-void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set,
-                          const Lighting& lighting, std::vector<shader::Light>& lights) {
+bool standAlike(std::span<const Light> some, std::span<const Light> others) {
+  return std::ranges::equal(some, others,
+                            [](const Light& a, const Light& b) { return a.place == b.place && a.atInfinity == b.atInfinity; });
+}
+
+void LightPass::setBeyond(Commands& commands, const DeviceVolume& volume, DirectionSet set, Placed& placed) {
   int slot = 0;
-  beyondDepths_ = Buffer(device_, std::max<VkDeviceSize>(lights.size(), 1) * kEyeDepthsBytes,
-                         MemoryUse::Device, "depths beyond lights");
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    const RaySource source = lightSource(lighting.lights[i], volume.indexToWorld);
+  placed.beyondDepths =
+      Buffer(device_, std::max<VkDeviceSize>(placed.onDevice.size(), 1) * kEyeDepthsBytes, MemoryUse::Device, "depths beyond lights");
+  for (std::size_t i = 0; i < placed.onDevice.size(); ++i) {
+    const RaySource source = lightSource(placed.lighting.lights[i], volume.indexToWorld);
     if (!isInside(source, volume.layout.dimensions)) continue;
-    beyond_.record(commands, volume, set, source, beyondDepths_, slot);
-    lights[i].beyond = addressWords(beyondDepths_.address() + VkDeviceSize(slot++) * kEyeDepthsBytes);
+    beyond_.record(commands, volume, set, source, placed.beyondDepths, slot);
+    placed.onDevice[i].beyond = addressWords(placed.beyondDepths.address() + VkDeviceSize(slot++) * kEyeDepthsBytes);
   }
 }
 
-void LightPass::setRays(Commands& commands, const DeviceVolume& volume, const Lighting& lighting, bool scalars, const OccupiedCells* cells,
-                        std::vector<shader::Light>& lights) {
-  const std::vector<RaySource> sources = sourcesOf(lighting, volume);
+void LightPass::setRays(Commands& commands, const DeviceVolume& volume, const OccupiedCells* cells, Placed& placed) const {
+  const std::vector<RaySource> sources = sourcesOf(placed.lighting, volume);
   checkRaysFit(device_, rayMemory(volume.layout.dimensions, sources));
-  for (std::size_t i = 0; i < lights.size(); ++i) {
-    RaySweep& sweep = rays_.emplace_back(device_, "light sweep");
-    sweep.record(commands, volume, sources[i], scalars, cells);
-    std::ranges::copy(sweep.fans(), lights[i].fans);
+  for (std::size_t i = 0; i < placed.onDevice.size(); ++i) {
+    RaySweep& sweep = placed.rays.emplace_back(device_, "light sweep");
+    sweep.record(commands, volume, sources[i], placed.scalars, cells);
+    std::ranges::copy(sweep.fans(), placed.onDevice[i].fans);
   }
 }
 
-std::vector<shader::Light> LightPass::place(Commands& commands, const DeviceVolume& volume, DirectionSet set, const Lighting& lighting,
-                                            bool scalars, const OccupiedCells* cells) {
+LightPass::Placed LightPass::place(const DeviceVolume& volume, DirectionSet set, const Lighting& lighting, bool scalars,
+                                   const OccupiedCells* cells, std::vector<StageTime>& times, const Progress& progress) {
   const glm::dvec3 middle = 0.5 * glm::dvec3(volume.layout.dimensions - 1);
-  std::vector<shader::Light> lights;
-  for (const Light& light : lighting.lights)
-    lights.push_back(deviceLight(light, lightSource(light, volume.indexToWorld), middle));
-  rays_.clear();
+  Placed placed{.lighting = lighting, .scalars = scalars};
+  for (const Light& light : lighting.lights) placed.onDevice.push_back(deviceLight(light, lightSource(light, volume.indexToWorld), middle));
+  Commands commands(device_);
   if (lighting.attenuation == LightAttenuation::Exact)
-    setRays(commands, volume, lighting, scalars, cells, lights);
+    setRays(commands, volume, cells, placed);
   else
-    setBeyond(commands, volume, set, lighting, lights);
-  return lights;
+    setBeyond(commands, volume, set, placed);
+  commands.submitAndWait(progress);
+  addTimes(times, commands.times());
+  const auto bytes = std::as_bytes(std::span(placed.onDevice));
+  placed.lights = Buffer(device_, std::max<VkDeviceSize>(bytes.size(), 4), MemoryUse::Device, "lights");
+  upload(device_, placed.lights, bytes);
+  return placed;
 }
 
 shader::FrameLighting LightPass::prepare(const DeviceVolume& volume, const TableSettings& table, const FrameSettings& settings,
                                          bool scalars, const OccupiedCells* cells, std::vector<StageTime>& times,
                                          const Progress& progress) {
   const Lighting& lighting = *settings.lighting;
-  const DirectionSet set = table.directions;
-  const bool stand =
-      placed_ && placed_->lights == lighting.lights && placed_->attenuation == lighting.attenuation && placedScalars_ == scalars;
+  const auto placeAgain = [&] { placed_ = place(volume, table.directions, lighting, scalars, cells, times, progress); };
+  const bool stand = placed_ && standAlike(placed_->lighting.lights, lighting.lights) &&
+                     placed_->lighting.attenuation == lighting.attenuation && placed_->scalars == scalars &&
+                     (!isOld_ || settings.allowsOldLight);
   if (!stand) {
-    placed_.reset();  // invalid until the new lights are complete
-    Commands commands(device_);
-    const std::vector<shader::Light> lights = place(commands, volume, set, lighting, scalars, cells);
-    commands.submitAndWait(progress);
-    addTimes(times, commands.times());
-    const auto bytes = std::as_bytes(std::span(lights));
-    lights_ = Buffer(device_, std::max<VkDeviceSize>(bytes.size(), 4), MemoryUse::Device, "lights");
-    upload(device_, lights_, bytes);
+    // The old lights stay until the new ones are complete, for a draft that follows if these are given up.
+    try {
+      placeAgain();
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::OutOfMemory || !placed_) throw;
+      placed_.reset();
+      placeAgain();
+    }
+    isOld_ = false;
+    ++version_;
+  } else if (placed_->lighting.lights != lighting.lights) {
+    for (std::size_t i = 0; i < lighting.lights.size(); ++i)
+      placed_->onDevice[i].color = lighting.lights[i].intensity * lighting.lights[i].color;
+    upload(device_, placed_->lights, std::as_bytes(std::span(placed_->onDevice)));
   }
-  placed_ = lighting;
-  placedScalars_ = scalars;
+  placed_->lighting = lighting;
   return {.lightCount = int(lighting.lights.size()),
           .lookup = lighting.attenuation == LightAttenuation::Exact ? shader::kLookupExact : int(settings.tableLookup()),
           .tint = lighting.tint,

@@ -20,6 +20,8 @@ DeviceScalars uploadScalars(const Device& device, const Volume& volume, const Tr
   result.corner = scalars.corner();
 
   const TransferTable table(function, volume.minimum, volume.maximum);
+  result.low = table.low();
+  result.high = table.high();
   std::vector<std::uint32_t> numbers(std::size_t(result.cells.x) * std::size_t(result.cells.y) * std::size_t(result.cells.z), 0);
   for (std::size_t i = 0; i < scalars.count(); ++i) {
     const glm::ivec3 cell = scalars.cell(i);
@@ -50,6 +52,14 @@ DeviceScalars uploadScalars(const Device& device, const Volume& volume, const Tr
     result.numberTexels.emplace(device, result.brickNumbers, VK_FORMAT_R32_UINT);
   }
   return result;
+}
+
+bool DeviceScalars::reclassify(const Device& device, const Volume& volume, const TransferFunction& function, double extinctionScale) {
+  const TransferTable other(function, volume.minimum, volume.maximum);
+  if (other.low() != low || other.high() != high) return false;
+  const std::vector<glm::vec4> texels = other.texels(extinctionScale);
+  upload(device, table, std::as_bytes(std::span(texels)));
+  return true;
 }
 
 shader::CodeBricks DeviceScalars::onDevice() const {

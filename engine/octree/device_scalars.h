@@ -22,7 +22,11 @@ struct DeviceScalars {
   glm::ivec3 cells{0};   ///< number of bricks along the axes
   glm::ivec3 corner{0};  ///< position of the box's voxel (0,0,0) in its brick
 
+  double low = 0.0, high = 0.0;  ///< the scalars of the least and the greatest code
+
   shader::CodeBricks onDevice() const;
+  /// Replaces the table by that of another function. False where scalars would have other codes; then nothing changes.
+  bool reclassify(const Device& device, const Volume& volume, const TransferFunction& function, double extinctionScale);
 };
 
 /// Uploads the scalars and the table. Extinctions in the table are per world unit, times `extinctionScale`.

@@ -10,9 +10,6 @@ namespace freevoxels {
 
 static_assert(OccupiedCells::kEdge == 1 << shader::kSkipLevels);
 
-OccupiedCells::OccupiedCells(const Device& device, const Volume& volume, const Classification& classification)
-    : OccupiedCells(device, metCells(volume, classification, kEdge)) {}
-
 OccupiedCells::OccupiedCells(const Device& device, Cells met)
     : met_(std::move(met)), dimensions_(device, sizeof(glm::ivec3), MemoryUse::Device, "dimensions of cells") {
   const Cells near = spread(met_, -1, 1);

@@ -11,8 +11,6 @@ class OccupiedCells {
  public:
   static constexpr int kEdge = 4;  ///< voxels
 
-  /// metCells() of cells of kEdge.
-  OccupiedCells(const Device& device, const Volume& volume, const Classification& classification);
   /// `met` marks cells of kEdge.
   OccupiedCells(const Device& device, Cells met);
   const Cells& met() const { return met_; }

@@ -70,6 +70,8 @@ struct FrameSettings {
   std::optional<Lighting> lighting = std::nullopt;
   /// Light that is scattered any number of times is solved on cells whose edge is so many times doubled, for drafts.
   int scatteringCoarseness = 0;
+  /// Whether light may be that of the volume's classification before (Renderer::reclassify), for drafts.
+  bool allowsOldLight = false;
   /// Where rays end, of the image's size; only gathered. Null if there is none.
   std::shared_ptr<const Holdout> holdout = nullptr;
 

@@ -25,14 +25,17 @@ struct TransferFunction {
   struct OpacityPoint {
     float scalar;   ///< already mapped to the volume's scalars
     float opacity;  ///< 0..1 per `unitDistance`
+    bool operator==(const OpacityPoint&) const = default;
   };
   struct ColorPoint {
     float scalar;
     glm::vec3 color;  ///< linear Rec.709
+    bool operator==(const ColorPoint&) const = default;
   };
   std::vector<OpacityPoint> opacity;  ///< at least one, scalars ascending
   std::vector<ColorPoint> color;      ///< at least one, scalars ascending
   double unitDistance = 1.0;          ///< world length that `opacity` refers to
+  bool operator==(const TransferFunction&) const = default;
 };
 
 /// Emission of black bodies by temperature (blackbody.h).
@@ -40,6 +43,7 @@ struct Emission {
   double strength = 1.0;  ///< luminance per world unit at kReferenceTemperature
   /// Kelvin = scale x value + offset.
   double temperatureScale = 1.0, temperatureOffset = 0.0;
+  bool operator==(const Emission&) const = default;
 };
 
 /// What a transfer function is applied to. Post: scalars interpolated at the samples of a ray. Pre: voxels,
@@ -53,6 +57,7 @@ struct Classification {
   std::optional<Emission> emission = std::nullopt;        ///< from the volume's temperatures, if it has any
   ClassificationOrder order = ClassificationOrder::Post;  ///< ignored for volumes with emission, which are Pre
 
+  bool operator==(const Classification&) const = default;
   /// Whether samples of the volume are classified after interpolation (Post applies).
   bool isPost(const Volume& volume) const;
 };

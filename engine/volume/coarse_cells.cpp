@@ -51,40 +51,65 @@ void addBrick(std::vector<Range>& ranges, glm::ivec2 cells, const ScalarBricks& 
     }
 }
 
-/// Marks the cells for whose range of values `holds(low, high)` is true. The range includes `below` and `above` (0 or 1) more voxels at the
-/// cells' lower and upper sides.
-template <typename Holds>
-void markCells(Cells& cells, const ScalarBricks& scalars, int edge, int below, int above, const Holds& holds) {
+/// The ranges of the values in cells of `edge` voxels that have some. A range includes `below` and `above` (0 or 1) more voxels at the
+/// cell's lower and upper sides.
+CellRanges rangesOf(const ScalarBricks& scalars, int edge, int below, int above) {
+  CellRanges result{.dimensions = (scalars.dimensions() + edge - 1) / edge, .cells = {}};
   const std::vector<std::size_t> order = scalars.inOrder();
   const auto planeOf = [&](std::size_t brick) { return scalars.firstVoxel(brick).z; };
-  tbb::parallel_for(0, cells.dimensions.z, [&](int plane) {
+  const std::size_t perPlane = std::size_t(result.dimensions.x) * std::size_t(result.dimensions.y);
+  std::vector<std::vector<CellRanges::Cell>> found(std::size_t(result.dimensions.z));
+  tbb::parallel_for(0, result.dimensions.z, [&](int plane) {
     const glm::ivec2 planes(plane * edge - below, (plane + 1) * edge + above);
     const auto first = std::ranges::lower_bound(order, planes[0] - ScalarBricks::kEdge + 1, {}, planeOf);
     const auto end = std::ranges::lower_bound(first, order.end(), planes[1], {}, planeOf);
     if (first == end) return;
-    std::vector<Range> ranges(std::size_t(cells.dimensions.x) * std::size_t(cells.dimensions.y));
+    std::vector<Range> ranges(perPlane);
     for (auto brick = first; brick != end; ++brick)
-      addBrick(ranges, glm::ivec2(cells.dimensions), scalars, *brick, planes, edge, below, above);
-    for (std::size_t i = 0; i < ranges.size(); ++i)
-      if (ranges[i].low <= ranges[i].high && holds(ranges[i].low, ranges[i].high))
-        cells.values[i + std::size_t(plane) * ranges.size()] = 1;
+      addBrick(ranges, glm::ivec2(result.dimensions), scalars, *brick, planes, edge, below, above);
+    for (std::size_t i = 0; i < perPlane; ++i)
+      if (ranges[i].low <= ranges[i].high)
+        found[std::size_t(plane)].push_back({std::uint32_t(i + std::size_t(plane) * perPlane), ranges[i].low, ranges[i].high});
   });
+  std::size_t count = 0;
+  for (const auto& plane : found) count += plane.size();
+  result.cells.reserve(count);
+  for (const auto& plane : found) result.cells.insert(result.cells.end(), plane.begin(), plane.end());
+  return result;
+}
+
+/// Marks the cells for whose range of values `holds(low, high)` is true.
+template <typename Holds>
+void markCells(Cells& cells, const CellRanges& ranges, const Holds& holds) {
+  for (const CellRanges::Cell& cell : ranges.cells)
+    if (holds(cell.low, cell.high)) cells.values[cell.index] = 1;
 }
 
 }  // namespace
 
+CellRanges scalarRanges(const Volume& volume, int edge) {
+  return rangesOf(volume.scalars, edge, 0, 1);
+}
+
+Cells metCells(const CellRanges& ranges, const Volume& volume, const TransferFunction& function) {
+  Cells cells(ranges.dimensions);
+  const TransferIntegral integral(function, volume.minimum, volume.maximum);
+  markCells(cells, ranges, [&](float low, float high) { return integral.isOccupied(low, high); });
+  return cells;
+}
+
 Cells metCells(const Volume& volume, const Classification& classification, int edge, float density) {
+  if (classification.isPost(volume)) return metCells(scalarRanges(volume, edge), volume, *classification.transferFunction);
   Cells cells((volume.dimensions + edge - 1) / edge);
   if (classification.transferFunction) {
     const TransferIntegral integral(*classification.transferFunction, volume.minimum, volume.maximum);
-    const int below = classification.isPost(volume) ? 0 : 1;
-    markCells(cells, volume.scalars, edge, below, 1, [&](float low, float high) { return integral.isOccupied(low, high); });
+    markCells(cells, rangesOf(volume.scalars, edge, 1, 1), [&](float low, float high) { return integral.isOccupied(low, high); });
   } else {
-    markCells(cells, volume.scalars, edge, 0, 0, [&](float, float high) { return high > density; });
+    markCells(cells, rangesOf(volume.scalars, edge, 0, 0), [&](float, float high) { return high > density; });
   }
   if (classification.emission && volume.temperature) {
     const auto shines = [&](float, float high) { return brightestLight(*classification.emission, *volume.temperature, high) > 0.0; };
-    markCells(cells, volume.temperature->values, edge, 0, 0, shines);
+    markCells(cells, rangesOf(volume.temperature->values, edge, 0, 0), shines);
   }
   return cells;
 }

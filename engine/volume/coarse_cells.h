@@ -34,6 +34,20 @@ struct Cells {
 /// that the interpolated scalars begin one voxel earlier.
 Cells metCells(const Volume& volume, const Classification& classification, int edge, float density = 0.0f);
 
+/// The ranges of the scalars in the cells that have some, of the voxels by which metCells() decides for a volume that is classified after
+/// interpolation. They do not depend on the transfer function.
+struct CellRanges {
+  struct Cell {
+    std::uint32_t index;  ///< Cells::index()
+    float low, high;
+  };
+  glm::ivec3 dimensions{0};  ///< number of cells along the axes
+  std::vector<Cell> cells;
+};
+CellRanges scalarRanges(const Volume& volume, int edge);
+/// metCells() of cells of these ranges, for `volume` classified by the function after interpolation.
+Cells metCells(const CellRanges& ranges, const Volume& volume, const TransferFunction& function);
+
 /// Cells of twice the edge, 1 if any of their eight cells is 1.
 Cells coarserCells(const Cells& cells);
 

@@ -64,7 +64,7 @@ TEST_F(LightingTest, RaysThatPassOverEmptyCellsHaveTheSameBits) {
   for (const auto& [volume, classification] : {Case(&medium, &density), Case(&scan, &shells)}) {
     std::vector<StageTime> times;
     const BuiltVolume built = buildVolume(device(), *volume, *classification, times);
-    const OccupiedCells cells(device(), *volume, *classification);
+    const OccupiedCells cells(device(), metCells(*volume, *classification, OccupiedCells::kEdge));
     const bool scalars = built.volume.scalarBricks.has_value();
     EXPECT_EQ(scalars, volume == &scan);
     const auto nearOnes = std::ranges::count(spread(cells.met(), -1, 1).values, 1);

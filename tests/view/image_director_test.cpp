@@ -57,6 +57,42 @@ TEST_F(ImageDirectorTest, RefinesInStepsAndMovesWithAllVoxels) {
   EXPECT_EQ(moved.back().revision, moved.front().revision) << "nothing else is resolved again";
 }
 
+TEST_F(ImageDirectorTest, EditsOfATransferFunctionAreDrawnWithAllVoxels) {
+  state.scene.input = {.volume = "procedural:head", .grid = std::nullopt, .resolution = glm::ivec3(100)};
+  state.scene.lighting.unlit = false;
+  state.scene.classification.transferFunction = "skin-and-bone";
+  follow();
+  const auto edit = [&] {
+    state.changed = true;
+    return follow();
+  };
+  state.scene.classification.window = ValueWindow{.low = 0.3, .high = 0.8};
+  const std::vector<ImageRequest> edited = edit();
+  ASSERT_GE(edited.size(), 2u);
+  for (const ImageRequest& request : edited) EXPECT_EQ(request.voxelsAlongEdge, kAllVoxels);
+  EXPECT_EQ(edited.front().purpose, Purpose::Classify);
+  EXPECT_EQ(edited.back().purpose, Purpose::Whole);
+  const Image after = downloadImage(device(), *state.whole->image);
+
+  ImageDirector another(device(), true);
+  ViewState same = state;
+  same.changed = true;
+  same.whole = same.latest = nullptr;
+  std::exception_ptr failure;
+  for (int i = 0; i < 20'000 && !another.isComplete(same); ++i) {
+    another.ask(same, {64, 48}, false);
+    another.take(same, failure);
+    std::this_thread::sleep_for(std::chrono::milliseconds(2));
+  }
+  ASSERT_TRUE(another.isComplete(same));
+  EXPECT_EQ(after.pixels, downloadImage(device(), *same.whole->image).pixels) << "as of a volume that was opened with this function";
+
+  state.scene.classification.order = ClassificationOrder::Pre;
+  EXPECT_EQ(edit().front().purpose, Purpose::Edit) << "what is made of the voxels is other than before";
+  state.scene.classification.opacity = 0.5;
+  EXPECT_EQ(edit().front().purpose, Purpose::Edit) << "voxels are classified before interpolation";
+}
+
 /// The image that is shown at once after an edit of colours, beside the whole image that follows it.
 TEST_F(ImageDirectorTest, ColoursAreMixedOfLayersOnceTheyWereEdited) {
   const auto expectMixed = [&] {
