@@ -23,13 +23,21 @@ VolumeMemory DeviceScene::memory() const {
 }
 
 bool DeviceScene::reclassify(const Classification& other) {
-  std::optional<DeviceScalars>& scalars = built.volume.scalarBricks;
-  if (!scalars || !other.isPost(hostVolume) ||
-      !scalars->reclassify(device, hostVolume, *other.transferFunction, kStoredDepth * built.volume.voxelSize))
-    return false;
+  if (!built.volume.scalarBricks || !other.isPost(hostVolume)) return false;
+  const TransferFunction& function = *other.transferFunction;
+  const double extinctionScale = kStoredDepth * built.volume.voxelSize;
+  if (!built.volume.scalarBricks->reclassify(device, hostVolume, function, extinctionScale)) {
+    try {
+      built.volume.scalarBricks = uploadScalars(device, hostVolume, function, extinctionScale);
+    } catch (const Error& error) {
+      if (error.kind() != ErrorKind::OutOfMemory) throw;
+      return false;
+    }
+    ++codesVersion_;
+  }
   classification = other;
   if (built.hasBlocks()) {
-    DeviceScalars kept = std::move(*scalars);
+    std::optional<DeviceScalars> kept = std::move(built.volume.scalarBricks);
     built = {.volume = makeDeviceVolume(device, hostVolume, classification)};
     built.volume.scalarBricks = std::move(kept);
   }

@@ -39,9 +39,11 @@ class DeviceScene {
   TargetPool targetPool;
 
   VolumeMemory memory() const;
-  /// Goes on with another classification where that keeps the codes of the volume's scalars, so that all that does not depend on it is
-  /// kept. Otherwise returns false, and nothing changes.
+  /// Goes on with another transfer function of scalars, and keeps what does not depend on it. Where there are no scalars, or too little
+  /// memory, returns false, and nothing changes.
   bool reclassify(const Classification& other);
+  /// Another number whenever scalars have got other codes.
+  int codesVersion() const { return codesVersion_; }
   /// The volume with its classified blocks, which are made if they do not exist yet.
   const BuiltVolume& builtWithBlocks(const Progress& progress = {});
   /// Where the volume has something to see.
@@ -68,6 +70,7 @@ class DeviceScene {
   std::vector<double> largestDepths_;
   std::optional<LightPass> lights_;
   std::optional<ScatteringSolver> scattering_;
+  int codesVersion_ = 0;
   bool scatteringIsOld_ = false;  ///< whether it was solved for another classification
   bool scatters_ = false;  ///< whether the last frame that was lit has scattered light
 };

@@ -5,6 +5,8 @@
 
 #include "engine/gather_drawing.h"
 
+#include <utility>
+
 #include "engine/core/error.h"
 #include "engine/gathering/gather_rows.h"
 #include "engine/splatting/accumulate_pass.h"
@@ -14,6 +16,7 @@ namespace freevoxels {
 void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress) {
   try {
     const Cells& met = scene_.occupiedCells().met();
+    if (std::exchange(codesVersion_, scene_.codesVersion()) != scene_.codesVersion()) volume_.reset();
     if (!volume_)
       volume_.emplace(scene_.device, scene_.classification, scene_.built, met, scene_.frameTimes);
     else if (isOld_)

@@ -46,6 +46,7 @@ class GatherDrawing {
   DeviceScene& scene_;
   std::optional<GatherVolume> volume_;
   bool isOld_ = false;  ///< whether volume_ has not followed the scene's classification yet
+  int codesVersion_ = 0;  ///< DeviceScene::codesVersion() of volume_
   std::optional<GatherPass> pass_;
 };
 

@@ -49,9 +49,9 @@ class Renderer {
   ~Renderer();
 
   /// Goes on with another transfer function for the next frames, which are the same to the bit as those of a new renderer. What does not
-  /// depend on the function is kept: scalars, their gradients and their quads. Only for a single volume that is on the device as a whole
-  /// and is classified after interpolation, before and after, with the same codes of scalars, which functions far outside of the volume's
-  /// range change. Otherwise returns false, and nothing changes.
+  /// depend on the function is kept: scalars, their gradients and their quads, unless the function's range is another one that gives
+  /// scalars other codes (TransferTable). Only for a single volume that is on the device as a whole and is classified after interpolation,
+  /// before and after. Otherwise returns false, and nothing changes.
   bool reclassify(const Classification& classification);
 
   /// Draws a frame and waits for it. `progress` is called about every 50 ms, and may abandon the frame by an exception, which

@@ -97,7 +97,7 @@ Result sweeps(const Device& device, DirectionSet directions, int resolution, int
   const auto count = std::uint64_t(directionCount(directions));
   return {.name = fmt::format("{0} sweeps, {1}x{1}x{1}", count, resolution),
           .milliseconds = time,
-          .copyMilliseconds = copyTime((count + 1) * volume.voxelCount()),
+          .copyMilliseconds = copyTime(device, (count + 1) * volume.voxelCount()),
           .perSecond = double(count * volume.voxelCount()) / time * 1e3};
 }
 
@@ -123,7 +123,7 @@ Result octree(const Device& device, std::string_view name, AttenuationCode code,
   return {.name = fmt::format("octree of {0}, {1}^3, {2}: {3:.2f} of the sweeps", name, resolution,
                               code == AttenuationCode::Depth8 ? "depth8" : "linear8", time / sweeps),
           .milliseconds = time,
-          .copyMilliseconds = copyTime(27 * voxels),
+          .copyMilliseconds = copyTime(device, 27 * voxels),
           .perSecond = 26.0 * double(voxels) / time * 1e3};
 }
 
@@ -268,11 +268,10 @@ Result compaction(const Device& device, int resolution, int runs) {
     commands.submitAndWait();
     return total(commands);
   });
-  return {
-      .name = fmt::format("list of {} occupied of {}^3 voxels", onDevice.volume.stored.front(), resolution),
-      .milliseconds = time,
-      .copyMilliseconds = copyTime(volume.voxelCount() / 4 + 4 * onDevice.volume.stored.front()),
-      .perSecond = double(volume.voxelCount()) / time * 1e3};
+  return {.name = fmt::format("list of {} occupied of {}^3 voxels", onDevice.volume.stored.front(), resolution),
+          .milliseconds = time,
+          .copyMilliseconds = copyTime(device, volume.voxelCount() / 4 + 4 * onDevice.volume.stored.front()),
+          .perSecond = double(volume.voxelCount()) / time * 1e3};
 }
 
 Result splats(const Device& device, double pixels, int runs) {
@@ -310,6 +309,47 @@ Result wholeScan(const Device& device, int resolution, bool lit, int runs) {
       makeQualityScene({"head", QualityColor::Bone, false}, resolution, makeProcedural("head", resolution));
   return {.name = fmt::format("first image of a dense scan, {}^3, {}", resolution, lit ? "one light" : "unlit"),
           .milliseconds = firstImage(device, scene.volume, scene.classification, lit, runs)};
+}
+
+std::vector<Result> edits(const Device& device, int resolution, int runs) {
+  const QualityScene scene = makeQualityScene({"head", QualityColor::Bone, false}, resolution, makeProcedural("head", resolution));
+  Renderer renderer(device, scene.volume, scene.classification, {});
+  FrameSettings whole{.size = {1280, 800}, .lighting = directionalLights(1)}, draft = whole;
+  draft.size = whole.size / 5;
+  draft.lod = 0.2f;
+  draft.allowsOldLight = true;
+  draft.gather().mostSamplesAcrossPixel = 1.0;
+  draft.gather().sampleTolerance = 0.0f;
+  const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.6, {});
+  renderer.render(camera, whole);
+  Classification edited = scene.classification;
+  int edit = 0;
+  const auto turn = [&] {
+    for (TransferFunction::OpacityPoint& point : edited.transferFunction->opacity) point.opacity *= ++edit % 2 == 1 ? 0.9f : 1.0f / 0.9f;
+    FV_CHECK_EQ(renderer.reclassify(edited), true);
+  };
+  std::vector<Result> results;
+  const auto add = [&](const char* name, const FrameSettings& settings) {
+    const double time = least(runs, [&] {
+      return millisecondsOf([&] {
+        turn();
+        renderer.render(camera, settings);
+      });
+    });
+    results.push_back(
+        {.name = fmt::format("edit of a function, dense scan {}^3, {}x{}, {}", resolution, settings.size.x, settings.size.y, name),
+         .milliseconds = time});
+  };
+  add("draft", draft);
+  add("whole", whole);
+  for (const bool lit : {false, true}) {
+    FrameSettings small{.size = {256, 256}};
+    if (lit) small.lighting = whole.lighting;
+    const double time = least(runs, [&] { return millisecondsOf([&] { renderer.render(camera, small); }); });
+    results.push_back(
+        {.name = fmt::format("small frame, dense scan {}^3, 256x256, {}", resolution, lit ? "one light" : "unlit"), .milliseconds = time});
+  }
+  return results;
 }
 
 std::vector<Result> flight(const Device& device, int resolution, int runs) {

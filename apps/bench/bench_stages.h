@@ -55,6 +55,10 @@ Result wholeRender(const Device& device, const InputDescription& input, bool lit
 /// A whole render of a dense scan of N³ voxels: 8-bit scalars with a transfer function.
 Result wholeScan(const Device& device, int resolution, bool lit, int runs);
 
+/// What a user waits for who turns a transfer function of a dense scan of N³ voxels, at 1280 x 800 pixels with one light: a draft of 1/5 of
+/// the edges' pixels with the light that there was, and the whole image; and small frames.
+std::vector<Result> edits(const Device& device, int resolution, int runs);
+
 /// A frame of a flight through procedural:cloud at `resolution`³ at 512 x 512 pixels: the mean of frames with
 /// the eye outside the box, and of those with the eye inside. The table is made before.
 std::vector<Result> flight(const Device& device, int resolution, int runs);

@@ -8,6 +8,7 @@
 
 #include "apps/bench/baked_stages.h"
 #include "apps/bench/bench_stages.h"
+#include "apps/bench/native_march.h"
 #include "apps/bench/real_ranks.h"
 #include "apps/common/device_options.h"
 #include "apps/common/program.h"
@@ -128,10 +129,13 @@ struct Stage {
   std::string name;
   Results (*measure)(const Device& device, const Extent& extent);
 };
-const std::vector<Stage> kStages{{"sweeps", sweeps},   {"octree", octree}, {"zoom", zoom},
-                                 {"culling", culling}, {"frames", frames}, {"turntable", turntable},
-                                 {"lights", lights},   {"list", list},     {"splats", splats},
-                                 {"flight", flight},   {"whole", whole},   {"baked", baked}};
+Results edits(const Device& device, const Extent& extent) {
+  return bench::edits(device, extent.quick ? 128 : 256, extent.runs());
+}
+
+const std::vector<Stage> kStages{{"sweeps", sweeps},       {"octree", octree}, {"zoom", zoom},  {"culling", culling}, {"frames", frames},
+                                 {"turntable", turntable}, {"lights", lights}, {"list", list},  {"splats", splats},   {"flight", flight},
+                                 {"whole", whole},         {"edits", edits},   {"baked", baked}};
 
 std::vector<std::string> stageNames() {
   std::vector<std::string> names;
@@ -144,6 +148,13 @@ Results measure(const Device& device, const Extent& extent, const std::vector<st
   for (const Stage& stage : kStages)
     if (std::ranges::count(wanted, stage.name) > 0)
       std::ranges::move(stage.measure(device, extent), std::back_inserter(results));
+  return results;
+}
+
+Results marches(const Device& device, const Extent& extent) {
+  Results results;
+  for (const std::string_view name : {"head", "cloud"})
+    std::ranges::move(bench::nativeMarch(device, name, extent.quick ? 128 : 256, extent.runs()), std::back_inserter(results));
   return results;
 }
 
@@ -215,13 +226,13 @@ void measureCluster(const Device& device, bool quick, const std::string& json) {
 int main(int argc, char** argv) {
   CLI::App app(
       "Measures every stage on one device: the least time of several runs, and its ratio to copying the same number of bytes "
-      "with two threads in the same run.",
+      "in the device's memory in the same run.",
       "freevoxels-bench");
   DeviceOptions device;
   Extent extent;
   std::vector<std::string> wanted = stageNames();
   std::string json;
-  bool cluster = false;
+  bool cluster = false, march = false;
   app.add_option("IN", extent.inputs, "Volumes for whole renders: files, or procedural:NAME")
       ->capture_default_str();
   app.add_option("--json", json, "Write the figures as JSON to this file as well; draw_report.py plots those of --cluster");
@@ -230,6 +241,9 @@ int main(int argc, char** argv) {
       ->check(CLI::IsMember(stageNames()));
   app.add_flag("--cluster", cluster,
                "Instead of the stages, how a frame scales that is divided among 8 to 128 ranks, each drawn on this device");
+  app.add_flag("--march", march,
+               "Instead of the stages, unlit frames beside a march of every ray by code of the host's own: the limit of this machine")
+      ->excludes("--cluster");
   app.add_flag("--quick", extent.quick, "Smaller volumes and fewer runs");
   device.add(app);
   app.callback([&] {
@@ -241,7 +255,7 @@ int main(int argc, char** argv) {
         readScanHeader(input, volume.scanRequest(kMaxNumberedVoxels));
     device.withDevice([&](const Device& opened) {
       if (cluster) return measureCluster(opened, extent.quick, json);
-      const Results results = measure(opened, extent, wanted);
+      const Results results = march ? marches(opened, extent) : measure(opened, extent, wanted);
       fmt::print("{}\n", opened.description().name);
       for (const std::string& line : tableLines(results)) fmt::print("{}\n", line);
       if (json.empty()) return;

@@ -6,6 +6,9 @@
 #include <limits>
 #include <thread>
 
+#include "engine/vulkan/buffer.h"
+#include "engine/vulkan/commands.h"
+
 namespace freevoxels::bench {
 
 double least(int runs, const std::function<double()>& run) {
@@ -24,7 +27,17 @@ double millisecondsOf(const std::function<void()>& work) {
   return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count();
 }
 
-double copyTime(std::uint64_t bytes) {
+double copyTime(const Device& device, std::uint64_t bytes) {
+  if (!device.isCpu()) {
+    const Buffer from(device, bytes, MemoryUse::Device, "copied bytes"), to(device, bytes, MemoryUse::Device, "copy of bytes");
+    return least(5, [&] {
+      Commands commands(device);
+      commands.beginPass("copy");
+      commands.copy(from, to, {.srcOffset = 0, .dstOffset = 0, .size = bytes});
+      commands.submitAndWait();
+      return commands.times().front().milliseconds;
+    });
+  }
   std::vector<char> from(bytes, 1), to(bytes, 2);
   const std::size_t half = bytes / 2;
   return least(5, [&] {

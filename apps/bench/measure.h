@@ -7,12 +7,14 @@
 #include <string>
 #include <vector>
 
+#include "engine/vulkan/device.h"
+
 namespace freevoxels::bench {
 
 struct Result {
   std::string name;               ///< "26 sweeps 128^3"
   double milliseconds = 0.0;      ///< least of all runs
-  double copyMilliseconds = 0.0;  ///< time to copy `bytes` with two threads; 0 if there is no such comparison
+  double copyMilliseconds = 0.0;  ///< copyTime(); 0 if there is no such comparison
   double perSecond = 0.0;         ///< items a second; 0 if not counted
 };
 
@@ -22,7 +24,7 @@ double least(int runs, const std::function<double()>& run);
 
 double millisecondsOf(const std::function<void()>& work);
 
-/// Milliseconds to copy `bytes` with two threads, the fastest of a few runs.
-double copyTime(std::uint64_t bytes);
+/// Milliseconds to copy `bytes` in the device's memory, the fastest of a few runs: by the device, or where that is a CPU with two threads.
+double copyTime(const Device& device, std::uint64_t bytes);
 
 }  // namespace freevoxels::bench

@@ -53,8 +53,8 @@ void addBrick(std::vector<Range>& ranges, glm::ivec2 cells, const ScalarBricks& 
 
 /// The ranges of the values in cells of `edge` voxels that have some. A range includes `below` and `above` (0 or 1) more voxels at the
 /// cell's lower and upper sides.
-CellRanges rangesOf(const ScalarBricks& scalars, int edge, int below, int above) {
-  CellRanges result{.dimensions = (scalars.dimensions() + edge - 1) / edge, .cells = {}};
+CellRanges rangesOf(const Volume& volume, const ScalarBricks& scalars, int edge, int below, int above) {
+  CellRanges result{.dimensions = (volume.dimensions + edge - 1) / edge, .cells = {}};
   const std::vector<std::size_t> order = scalars.inOrder();
   const auto planeOf = [&](std::size_t brick) { return scalars.firstVoxel(brick).z; };
   const std::size_t perPlane = std::size_t(result.dimensions.x) * std::size_t(result.dimensions.y);
@@ -88,7 +88,7 @@ void markCells(Cells& cells, const CellRanges& ranges, const Holds& holds) {
 }  // namespace
 
 CellRanges scalarRanges(const Volume& volume, int edge) {
-  return rangesOf(volume.scalars, edge, 0, 1);
+  return rangesOf(volume, volume.scalars, edge, 0, 1);
 }
 
 Cells metCells(const CellRanges& ranges, const Volume& volume, const TransferFunction& function) {
@@ -103,13 +103,13 @@ Cells metCells(const Volume& volume, const Classification& classification, int e
   Cells cells((volume.dimensions + edge - 1) / edge);
   if (classification.transferFunction) {
     const TransferIntegral integral(*classification.transferFunction, volume.minimum, volume.maximum);
-    markCells(cells, rangesOf(volume.scalars, edge, 1, 1), [&](float low, float high) { return integral.isOccupied(low, high); });
+    markCells(cells, rangesOf(volume, volume.scalars, edge, 1, 1), [&](float low, float high) { return integral.isOccupied(low, high); });
   } else {
-    markCells(cells, rangesOf(volume.scalars, edge, 0, 0), [&](float, float high) { return high > density; });
+    markCells(cells, rangesOf(volume, volume.scalars, edge, 0, 0), [&](float, float high) { return high > density; });
   }
   if (classification.emission && volume.temperature) {
     const auto shines = [&](float, float high) { return brightestLight(*classification.emission, *volume.temperature, high) > 0.0; };
-    markCells(cells, rangesOf(volume.temperature->values, edge, 0, 0), shines);
+    markCells(cells, rangesOf(volume, volume.temperature->values, edge, 0, 0), shines);
   }
   return cells;
 }

@@ -11,8 +11,9 @@ namespace freevoxels {
 namespace {
 
 constexpr int kIntervals = shader::kTransferIntervals;
-/// Scalars up to this many times the extent of the function's points outside of these have codes of their own.
-constexpr double kOutside = 4.0;
+/// Scalars that are farther outside of the function's points than this many times their extent get the code
+/// of the range's end.
+constexpr double kMaxOutside = 4.0;
 
 }  // namespace
 
@@ -20,13 +21,10 @@ TransferTable::TransferTable(const TransferFunction& function, float minimum, fl
     : low_(minimum), high_(maximum) {
   const double first = std::min(function.opacity.front().scalar, function.color.front().scalar);
   const double last = std::max(function.opacity.back().scalar, function.color.back().scalar);
-  if (last > first) {
-    // In steps, so that a function that is edited keeps the codes most of the time.
-    const double outside = kOutside * (last - first), size = std::exp2(std::ceil(std::log2(last - first + 2.0 * outside))),
-                 step = size / 4.0;
-    const double begin = step * std::floor((first - outside) / step), end = begin + size + step;
-    low_ = std::clamp(low_, begin, end);
-    high_ = std::clamp(high_, begin, end);
+  const double outside = kMaxOutside * (last - first);
+  if (outside > 0.0) {
+    low_ = std::clamp(low_, first - outside, last + outside);
+    high_ = std::clamp(high_, first - outside, last + outside);
   }
   const TransferIntegral integral(function, float(low_), float(high_));
   const double interval = (high_ - low_) / kIntervals;

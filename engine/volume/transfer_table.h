@@ -16,8 +16,8 @@ namespace freevoxels {
 /// Scalars become 16-bit codes, equally spaced between the two ends of the table's range.
 class TransferTable {
  public:
-  /// Tabulates the scalars from `minimum` to `maximum`, except for those far outside of the function's points, which have the code of the
-  /// range's end: a few outliers shall not take the precision of the others.
+  /// Tabulates the scalars from `minimum` to `maximum`, except for those far outside of the function's
+  /// points: a few outliers shall not take the precision of the others.
   TransferTable(const TransferFunction& function, float minimum, float maximum);
 
   /// The scalars of the least and the greatest code.
