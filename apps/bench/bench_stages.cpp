@@ -312,7 +312,8 @@ Result wholeScan(const Device& device, int resolution, bool lit, int runs) {
 }
 
 std::vector<Result> edits(const Device& device, int resolution, int runs) {
-  const QualityScene scene = makeQualityScene({"head", QualityColor::Bone, false}, resolution, makeProcedural("head", resolution));
+  QualityScene scene = makeQualityScene({"head", QualityColor::Bone, false}, resolution, makeProcedural("head", resolution));
+  scene.classification.order = ClassificationOrder::Post;
   Renderer renderer(device, scene.volume, scene.classification, {});
   FrameSettings whole{.size = {1280, 800}, .lighting = directionalLights(1)}, draft = whole;
   draft.size = whole.size / 5;

@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <span>
@@ -28,10 +27,9 @@ constexpr float kOpaque = 1.0f / 512.0f;  // transmittance, as GatherSettings::e
 /// Scalars of all voxels, and the medium by scalar.
 struct Field {
   glm::ivec3 size;
-  std::vector<float> values;                 ///< x fastest
-  float low, perScalar;                      ///< index into the tables: (scalar - low) * perScalar
-  std::array<std::vector<float>, 3> colors;  ///< extinction times colour
-  std::vector<float> extinction;             ///< per world unit
+  std::vector<float> values;      ///< x fastest
+  float low, perScalar;           ///< index into `medium`: (scalar - low) * perScalar
+  std::vector<glm::vec4> medium;  ///< extinction times colour and extinction, per world unit
 
   int stride(int axis) const { return axis == 0 ? 1 : axis == 1 ? size.x : size.x * size.y; }
 };
@@ -41,61 +39,86 @@ Field fieldOf(const Volume& volume, const Classification& classification) {
               .values = denseScalars(volume),
               .low = volume.minimum,
               .perScalar = float(kTableSize - 1) / std::max(volume.maximum - volume.minimum, 1e-20f),
-              .colors = {},
-              .extinction = {}};
+              .medium = {}};
   std::ranges::replace(field.values, kInactiveVoxel, volume.minimum);
   for (int i = 0; i < kTableSize; ++i) {
     const ClassifiedVoxel voxel = classify(classification, field.low + float(i) / field.perScalar);
-    field.extinction.push_back(float(voxel.extinction));
-    for (int c = 0; c < 3; ++c) field.colors[std::size_t(c)].push_back(float(voxel.extinction * voxel.color[c]));
+    field.medium.emplace_back(voxel.extinction * voxel.color, voxel.extinction);
   }
   return field;
 }
 
+using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
+using Ints = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
+
 /// Rays of one axis and direction in index space. On slice s of the axis they are at first + slope * s on the two sides.
 struct Packet {
-  std::array<float, kLanes> firstA, slopeA, firstB, slopeB;
-  std::array<float, kLanes> begin, end;  ///< the slices in the volume's box; none where begin > end
-  std::array<float, kLanes> layer;       ///< world length of a ray in a slice
-  std::array<float, kLanes> red, green, blue, transmittance;
+  Floats firstA, slopeA, firstB, slopeB;
+  Floats begin, end;  ///< the slices in the volume's box; none where begin > end
+  Floats layer;       ///< world length of a ray in a slice
+  Floats red, green, blue, transmittance;
 };
 
-/// Marches through the slices from `first` to `last`. Extinction is positive, so that exp(-x) is 2^whole times a polynomial.
-__attribute__((target_clones("avx2,fma", "default"))) void march(const Field& field, int axis, int first, int last, Packet& rays) {
+/// Marches through the slices from `first` to `last`.
+__attribute__((target_clones("arch=haswell", "default"))) void march(const Field& field, int axis, int first, int last, Packet& rays) {
   const int sideA = axis == 0 ? 1 : 0, sideB = axis == 2 ? 1 : 2, step = first <= last ? 1 : -1;
   const int strideA = field.stride(sideA), strideB = field.stride(sideB), strideS = field.stride(axis);
-  const float mostA = float(field.size[sideA] - 2), mostB = float(field.size[sideB] - 2);
-  const float* const values = field.values.data();
-  const float *const reds = field.colors[0].data(), *const greens = field.colors[1].data(), *const blues = field.colors[2].data();
-  const float* const extinctions = field.extinction.data();
+  const Floats zero = Floats{}, mostA = zero + float(field.size[sideA] - 2), mostB = zero + float(field.size[sideB] - 2);
+  const Floats lastEntry = zero + float(kTableSize - 1), most = zero + 100.0f, least = zero + 1e-20f;
+  const Floats firstA = rays.firstA, slopeA = rays.slopeA, firstB = rays.firstB, slopeB = rays.slopeB;
+  Floats red = rays.red, green = rays.green, blue = rays.blue, transmittance = rays.transmittance;
   for (int slice = first, tested = 0; slice != last + step; slice += step, ++tested) {
     const float s = float(slice);
+    const Floats a = firstA + slopeA * s, b = firstB + slopeB * s;
+    Floats wholeA = __builtin_convertvector(__builtin_convertvector(a, Ints), Floats);
+    Floats wholeB = __builtin_convertvector(__builtin_convertvector(b, Ints), Floats);
+    wholeA = wholeA < zero ? zero : wholeA > mostA ? mostA : wholeA;
+    wholeB = wholeB < zero ? zero : wholeB > mostB ? mostB : wholeB;
+    const Floats partA = a - wholeA, partB = b - wholeB;
+    const Ints places = __builtin_convertvector(wholeA, Ints) * strideA + __builtin_convertvector(wholeB, Ints) * strideB + slice * strideS;
+    Floats corner00 = zero, corner10 = zero, corner01 = zero, corner11 = zero;
     for (int i = 0; i < kLanes; ++i) {
-      const float a = rays.firstA[i] + rays.slopeA[i] * s, b = rays.firstB[i] + rays.slopeB[i] * s;
-      const float wholeA = std::min(std::max(float(int(a)), 0.0f), mostA), wholeB = std::min(std::max(float(int(b)), 0.0f), mostB);
-      const float partA = a - wholeA, partB = b - wholeB;
-      const int place = int(wholeA) * strideA + int(wholeB) * strideB + slice * strideS;
-      const float low = values[place] + partA * (values[place + strideA] - values[place]);
-      const float high = values[place + strideB] + partA * (values[place + strideA + strideB] - values[place + strideB]);
-      const float scalar = low + partB * (high - low);
-      const int entry = int(std::min(std::max((scalar - field.low) * field.perScalar, 0.0f), float(kTableSize - 1)));
-      const float length = s >= rays.begin[i] && s <= rays.end[i] ? rays.layer[i] : 0.0f;
-      const float extinction = extinctions[entry], depth = std::min(length * extinction * 1.44269504f, 100.0f);
-      const float whole = float(int(depth)), part = whole - depth;  // 2^-depth = 2^-whole * 2^part, part in -1..0
-      const float fraction =
-          1.0f + part * (0.69314718f + part * (0.24022651f + part * (0.05550411f + part * (0.00961813f + part * 0.00133336f))));
-      const float through = fraction * std::bit_cast<float>((127 - int(whole)) << 23);
-      const float seen = rays.transmittance[i] * (1.0f - through) / std::max(extinction, 1e-20f);
-      rays.red[i] += seen * reds[entry];
-      rays.green[i] += seen * greens[entry];
-      rays.blue[i] += seen * blues[entry];
-      rays.transmittance[i] *= through;
+      const float* const value = field.values.data() + places[i];
+      corner00[i] = value[0];
+      corner10[i] = value[strideA];
+      corner01[i] = value[strideB];
+      corner11[i] = value[strideA + strideB];
     }
+    const Floats low = corner00 + partA * (corner10 - corner00), high = corner01 + partA * (corner11 - corner01);
+    Floats entry = (low + partB * (high - low) - field.low) * field.perScalar;
+    entry = entry < zero ? zero : entry > lastEntry ? lastEntry : entry;
+    const Ints entries = __builtin_convertvector(entry, Ints);
+    Floats ownRed = zero, ownGreen = zero, ownBlue = zero, extinction = zero;
+    for (int i = 0; i < kLanes; ++i) {
+      const glm::vec4& medium = field.medium[std::size_t(entries[i])];
+      ownRed[i] = medium.r;
+      ownGreen[i] = medium.g;
+      ownBlue[i] = medium.b;
+      extinction[i] = medium.a;
+    }
+    const Floats length = (s >= rays.begin) & (s <= rays.end) ? rays.layer : zero;
+    Floats depth = length * extinction * 1.44269504f;
+    depth = depth > most ? most : depth;
+    // 2^-depth is 2^-whole, whose bits are made by hand, times a polynomial of the rest, which is in -1..0.
+    const Ints whole = __builtin_convertvector(depth, Ints);
+    const Floats part = __builtin_convertvector(whole, Floats) - depth;
+    const Floats fraction =
+        1.0f + part * (0.69314718f + part * (0.24022651f + part * (0.05550411f + part * (0.00961813f + part * 0.00133336f))));
+    const Floats through = fraction * (Floats)((127 - whole) << 23);
+    const Floats seen = transmittance * (1.0f - through) / (extinction > least ? extinction : least);
+    red += seen * ownRed;
+    green += seen * ownGreen;
+    blue += seen * ownBlue;
+    transmittance *= through;
     if (tested % kSlicesBetweenTests != kSlicesBetweenTests - 1) continue;
-    float most = 0.0f;
-    for (int i = 0; i < kLanes; ++i) most = std::max(most, rays.transmittance[i]);
-    if (most < kOpaque) return;
+    bool ends = true;
+    for (int i = 0; i < kLanes; ++i) ends = ends && transmittance[i] < kOpaque;
+    if (ends) break;
   }
+  rays.red = red;
+  rays.green = green;
+  rays.blue = blue;
+  rays.transmittance = transmittance;
 }
 
 struct IndexRay {
@@ -108,11 +131,11 @@ struct IndexRay {
 Packet packetOf(std::span<const IndexRay> pixels, const Field& field, int axis, double sign) {
   Packet rays{};
   const int sideA = axis == 0 ? 1 : 0, sideB = axis == 2 ? 1 : 2;
-  for (std::size_t i = 0; i < kLanes; ++i) {
+  for (int i = 0; i < kLanes; ++i) {
     rays.begin[i] = 1.0f;
     rays.end[i] = 0.0f;
     rays.transmittance[i] = 0.0f;
-    const IndexRay& ray = pixels[i];
+    const IndexRay& ray = pixels[std::size_t(i)];
     if (ray.axis != axis || ray.direction[axis] * sign < 0.0) continue;
     rays.transmittance[i] = 1.0f;
     const double slopeA = ray.direction[sideA] * sign, slopeB = ray.direction[sideB] * sign;
@@ -159,7 +182,7 @@ Image marchOnHost(const Field& field, const glm::dmat4& indexToWorld, const Came
         for (const double sign : {1.0, -1.0}) {
           Packet rays = packetOf(pixels, field, axis, sign);
           float begin = 1e9f, end = -1.0f;
-          for (std::size_t i = 0; i < kLanes; ++i) {
+          for (int i = 0; i < kLanes; ++i) {
             if (rays.begin[i] > rays.end[i]) continue;
             begin = std::min(begin, rays.begin[i]);
             end = std::max(end, rays.end[i]);
@@ -167,10 +190,9 @@ Image marchOnHost(const Field& field, const glm::dmat4& indexToWorld, const Came
           if (begin > end) continue;
           march(field, axis, int(sign > 0.0 ? begin : end), int(sign > 0.0 ? end : begin), rays);
           for (int i = 0; i < kLanes && x + i < size.x; ++i) {
-            const auto lane = std::size_t(i);
-            if (rays.begin[lane] <= rays.end[lane])
-              image.pixels[std::size_t(x + i) + std::size_t(size.x) * std::size_t(y)] = {rays.red[lane], rays.green[lane], rays.blue[lane],
-                                                                                         1.0f - rays.transmittance[lane]};
+            if (rays.begin[i] <= rays.end[i])
+              image.pixels[std::size_t(x + i) + std::size_t(size.x) * std::size_t(y)] = {rays.red[i], rays.green[i], rays.blue[i],
+                                                                                         1.0f - rays.transmittance[i]};
           }
         }
     }
@@ -182,8 +204,9 @@ Image marchOnHost(const Field& field, const glm::dmat4& indexToWorld, const Came
 
 std::vector<Result> nativeMarch(const Device& device, std::string_view name, int resolution, int runs) {
   const bool head = name == "head";
-  const QualityScene scene = makeQualityScene({head ? "head" : "cloud", head ? QualityColor::Bone : QualityColor::Cloud, false}, resolution,
-                                              makeProcedural(std::string(name), resolution));
+  QualityScene scene = makeQualityScene({head ? "head" : "cloud", head ? QualityColor::Bone : QualityColor::Cloud, false}, resolution,
+                                        makeProcedural(std::string(name), resolution));
+  scene.classification.order = ClassificationOrder::Post;
   const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.0, {});
   const FrameSettings settings{.size = {1024, 1024}};
   Renderer renderer(device, scene.volume, scene.classification, {});
