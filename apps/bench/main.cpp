@@ -177,7 +177,8 @@ std::vector<std::string> tableLines(const Results& results) {
 }
 
 nlohmann::ordered_json toJson(const Device& device, const Results& results) {
-  nlohmann::ordered_json json{{"device", device.description().name}, {"driver", device.description().driver}};
+  nlohmann::ordered_json json{
+      {"device", device.description().name}, {"driver", device.description().driver}, {"version", programVersion()}};
   for (const Result& result : results) {
     nlohmann::ordered_json stage{{"stage", result.name}, {"milliseconds", result.milliseconds}};
     if (result.copyMilliseconds > 0.0) {

@@ -46,6 +46,8 @@ constexpr std::array kEntries{
     Entry{Action::FromBelow, Menu::View, "From -y", "4", GLFW_KEY_4},
     Entry{Action::FromFront, Menu::View, "From +z", "5", GLFW_KEY_5},
     Entry{Action::FromBack, Menu::View, "From -z", "6", GLFW_KEY_6, With::Nothing, true},
+    Entry{Action::PreviousView, Menu::View, "Camera before", "Ctrl+Shift+Z", GLFW_KEY_Z, With::ControlShift},
+    Entry{Action::NextView, Menu::View, "Camera after", "Ctrl+Shift+Y", GLFW_KEY_Y, With::ControlShift},
     Entry{Action::AddBookmark, Menu::View, "Add camera bookmark", "Ctrl+B", GLFW_KEY_B, With::Control, true},
     Entry{Action::Axes, Menu::View, "Axes", ""},
     Entry{Action::Box, Menu::View, "Bounding box", "B", GLFW_KEY_B},
@@ -54,7 +56,7 @@ constexpr std::array kEntries{
     Entry{Action::Slices, Menu::View, "Slices", "L", GLFW_KEY_L},
     Entry{Action::Panel, Menu::View, "Side panel", "Tab", GLFW_KEY_TAB},
     Entry{Action::Keys, Menu::Help, "Keys and mouse", "F1", GLFW_KEY_F1},
-    Entry{Action::Cancel, Menu::None, "Cancel what is being saved", "Escape", GLFW_KEY_ESCAPE},
+    Entry{Action::Cancel, Menu::None, "Cancel what is being saved or read", "Escape", GLFW_KEY_ESCAPE},
 };
 
 constexpr std::array kMouse{
@@ -67,7 +69,7 @@ constexpr std::array kMouse{
     std::pair("Space, comma, full stop", "play a sequence; one frame back or on"),
 };
 
-bool isDialogOpen() {
+bool isPopupOpen() {
   return ImGui::IsPopupOpen("", ImGuiPopupFlags_AnyPopupId | ImGuiPopupFlags_AnyPopupLevel);
 }
 
@@ -89,13 +91,21 @@ void line(const char* keys, const char* meaning) {
 }  // namespace
 
 bool keysAreFree() {
-  return !ImGui::GetIO().WantTextInput && !isDialogOpen();
+  return !ImGui::GetIO().WantTextInput && !isPopupOpen();
 }
 
-std::optional<Action> pressedAction() {
-  if (isDialogOpen()) return std::nullopt;
+void takeKeysOfPopups(bool isDialogOpen) {
+  ImGuiConfigFlags& flags = ImGui::GetIO().ConfigFlags;
+  if (isPopupOpen() && !isDialogOpen)
+    flags |= ImGuiConfigFlags_NavEnableKeyboard;
+  else
+    flags &= ~ImGuiConfigFlags_NavEnableKeyboard;
+}
+
+std::optional<Action> pressedAction(bool isDialogOpen) {
+  if (isDialogOpen) return std::nullopt;
   for (const Entry& entry : kEntries)
-    if (isPressed(entry)) return entry.action;
+    if ((!isPopupOpen() || entry.with != With::Nothing) && isPressed(entry)) return entry.action;
   return std::nullopt;
 }
 

@@ -26,6 +26,8 @@ enum class Action {
   FromBelow,
   FromFront,
   FromBack,  // in the order of alongAxis()
+  PreviousView,
+  NextView,
   AddBookmark,
   Axes,
   Box,
@@ -47,8 +49,11 @@ struct ActionState {
 /// Whether keys without Ctrl are meant for the image: no text field has the cursor, and no dialog is open.
 bool keysAreFree();
 
-/// The action whose key was pressed in this frame. None while the user types, except for those with Ctrl that no text field has.
-std::optional<Action> pressedAction();
+/// Gives arrows, Enter and Escape to menus and lists of choices while one of them is open. Before a frame begins.
+void takeKeysOfPopups(bool isDialogOpen);
+
+/// The action whose key was pressed in this frame. None while a dialog is open or the user types; while a menu is open those with Ctrl.
+std::optional<Action> pressedAction(bool isDialogOpen);
 
 /// Draws the menus into the window's main menu bar, which has begun. Returns the action that is chosen.
 std::optional<Action> drawMenus(const std::array<ActionState, kActions>& states);

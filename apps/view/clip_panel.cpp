@@ -102,7 +102,7 @@ bool drawTicks(std::optional<VoxelBox>& box, std::optional<ClipPlane>& plane, co
   ImGui::SameLine(0.0f, ImGui::GetFontSize());
   const bool planeTicked = checkBox("plane", &hasPlane);
   hint("Draws only what is behind a plane, which can be dragged in the image", "--clip-plane");
-  if (boxTicked) box = hasBox ? std::optional(VoxelBox{glm::ivec3(0), state.latest->wholeDimensions - 1}) : std::nullopt;
+  if (boxTicked) box = hasBox ? std::optional(VoxelBox{glm::ivec3(0), state.latest->whole->dimensions - 1}) : std::nullopt;
   if (planeTicked) plane = hasPlane ? std::optional(firstPlane(*state.latest->scene.volume, *state.camera)) : std::nullopt;
   return boxTicked || planeTicked;
 }
@@ -110,11 +110,11 @@ bool drawTicks(std::optional<VoxelBox>& box, std::optional<ClipPlane>& plane, co
 }  // namespace
 
 void drawClipping(ViewState& state) {
-  if (!state.latest || !state.camera || state.latest->wholeDimensions == glm::ivec3(0) || state.latest->scene.volume->classification) return;
+  if (!state.latest || !state.camera || !state.latest->whole || state.latest->scene.volume->classification) return;
   std::optional<VoxelBox> box = state.scene.input.clipBox;
   std::optional<ClipPlane> plane = state.scene.input.clipPlane;
   bool changed = drawTicks(box, plane, state);
-  if (box) changed |= drawBox(*box, state.latest->wholeDimensions - 1);
+  if (box) changed |= drawBox(*box, state.latest->whole->dimensions - 1);
   if (plane) changed |= drawPlane(*plane, *state.latest->scene.volume, *state.camera);
   if (changed) state.clip(box, plane);
 }

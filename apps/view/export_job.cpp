@@ -42,7 +42,7 @@ ExportJob::Outcome ExportJob::outcomeOf(const Work& work, const std::string& don
     work(progress);
     return {true, done};
   } catch (const Cancelled&) {
-    return {false, "given up; what was complete is there"};
+    return {.done = false, .sentence = "cancelled: images that were complete are there", .cancelled = true};
   } catch (...) {
     return {false, currentFailure().sentence};
   }

@@ -19,6 +19,7 @@ class ExportJob {
   struct Outcome {
     bool done = false;     ///< whether all of it was done
     std::string sentence;  ///< what was done, or why it failed
+    bool cancelled = false;
   };
 
   /// `finished` is called by the thread at the end of every job.

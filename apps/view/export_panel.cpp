@@ -165,7 +165,8 @@ void ExportPanel::cancel() {
 }
 
 void ExportPanel::follow(ViewState& state) {
-  if (const std::optional<ExportJob::Outcome> outcome = job_.take()) (outcome->done ? state.notice : state.problem) = outcome->sentence;
+  if (const std::optional<ExportJob::Outcome> outcome = job_.take())
+    (outcome->done || outcome->cancelled ? state.notice : state.problem) = outcome->sentence;
   if (waiting_.empty() || job_.busy()) return;
   if (state.failed) {
     state.problem = "not saved, as there is no image: " + state.problem;

@@ -6,10 +6,12 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
+#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
 #include <set>
+#include <utility>
 
 #include "apps/common/sequence.h"
 #include "apps/view/keys.h"
@@ -49,7 +51,7 @@ std::string timeText(fs::file_time_type time) {
 
 /// What can be opened.
 std::vector<std::string> openedEndings() {
-  std::vector<std::string> endings{".vdb", ".fvx", ".json", ".exr", ".hdr"};
+  std::vector<std::string> endings{".vdb", ".fvx", ".json", ".exr", ".hdr", ".vp", ".xml", ".itf", ".tfi", ".1dt"};
   endings.insert(endings.end(), scanEndings().begin(), scanEndings().end());
   return endings;
 }
@@ -57,6 +59,26 @@ std::vector<std::string> openedEndings() {
 /// Whether a folder is opened like a file.
 bool isOpenedFolder(const fs::path& folder) {
   return hasEnding(folder, {".zarr"});
+}
+
+bool containsIgnoringCase(const std::string& text, const std::string& part) {
+  const auto same = [](char a, char b) {
+    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
+  };
+  return std::ranges::search(text, part, same).begin() != text.end() || part.empty();
+}
+
+bool startsIgnoringCase(const std::string& text, const std::string& part) {
+  return part.size() <= text.size() && containsIgnoringCase(text.substr(0, part.size()), part);
+}
+
+/// As much of a text as fits into a width, with "..." for what does not.
+std::string shortened(const std::string& text, float width) {
+  if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
+  std::size_t length = text.size();
+  const auto isWithinCharacter = [&] { return (static_cast<unsigned char>(text[length]) & 0xc0u) == 0x80u; };  // of UTF-8
+  while (length > 0 && (isWithinCharacter() || ImGui::CalcTextSize((text.substr(0, length) + "...").c_str()).x > width)) --length;
+  return text.substr(0, length) + "...";
 }
 
 /// How many files of a folder are the slices of volumes, which open by its name: TIFF and DICOM, of which the latter often have no ending.
@@ -95,10 +117,18 @@ void FileDialog::begin(const char* title, std::vector<std::string> endings, std:
   showsRecent_ = false;
   thumbnails_.clear();
   go(folder_);
+  // At first the folder of the last file, if the working folder has none.
+  const bool isFirst = !std::exchange(hasBegun_, true),
+             hasFile = std::ranges::any_of(entries_, [](const Entry&entry) { return !entry.isFolder(); });
+  const auto last = std::ranges::find_if(store_.recent(), [](const std::string& file) { return !proceduralName(file); });
+  std::error_code unknown;
+  if (isFirst && !hasFile && last != store_.recent().end() && fs::is_directory(fs::path(*last).parent_path(), unknown))
+    go(fs::path(*last).parent_path());
 }
 
 void FileDialog::go(fs::path folder) {
   problem_.clear();
+  typed_.clear();
   showsRecent_ = false;
   std::vector<Entry> folders;
   std::vector<fs::directory_entry> files;
@@ -124,12 +154,70 @@ void FileDialog::go(fs::path folder) {
   folder_ = folder.has_filename() || !folder.has_relative_path() ? std::move(folder) : folder.parent_path();
   hidden_ = hidden;
   entries_ = std::move(folders);
-  std::ranges::sort(entries_, {}, &Entry::name);
   slices_ = saves_ ? 0 : slicesAmong(all);
-  if (slices_ > 1)
-    entries_.insert(entries_.begin(), {.name = kThisFolder, .shown = fmt::format("This folder, as a volume of {} slices", slices_)});
+  if (slices_ > 1) entries_.push_back({.name = kThisFolder, .shown = fmt::format("This folder, as a volume of {} slices", slices_)});
   std::ranges::sort(files, {}, [](const fs::directory_entry& file) { return file.path(); });
   addFiles(files);
+  sort();
+}
+
+/// The folder itself first, then folders, which have names alone, then files.
+void FileDialog::sort() {
+  const auto rank = [](const Entry& entry) { return entry.name == kThisFolder ? 0 : entry.isFolder() ? 1 : 2; };
+  const auto isBefore = [&](const Entry& a, const Entry& b) {
+    if (rank(a) != rank(b)) return rank(a) < rank(b);
+    const Entry &first = descends_ ? b : a, &second = descends_ ? a : b;
+    if (!a.isFolder() && sortedBy_ == Column::Size && a.bytes != b.bytes) return first.bytes < second.bytes;
+    if (!a.isFolder() && sortedBy_ == Column::Changed && a.time != b.time) return first.time < second.time;
+    return first.name < second.name;
+  };
+  std::ranges::stable_sort(entries_, isBefore);
+}
+
+/// While one types a name to open, what does not contain it is left out.
+bool FileDialog::isListed(const Entry& entry) const {
+  return saves_ || containsIgnoringCase(entry.shown, typed_);
+}
+
+/// The name of the listed entry that is `step` after the one that has the current name, or the first or last.
+std::string FileDialog::next(int step) const {
+  std::vector<const Entry*> listed;
+  for (const Entry& entry : entries_)
+    if (isListed(entry)) listed.push_back(&entry);
+  if (listed.empty()) return name_;
+  const auto current = std::ranges::find(listed, name_, &Entry::name);
+  const auto count = int(listed.size());
+  const int number = current == listed.end() ? (step > 0 ? 0 : count - 1) : std::clamp(int(current - listed.begin()) + step, 0, count - 1);
+  return listed[std::size_t(number)]->name;
+}
+
+/// What all listed entries that begin with the name have in common.
+std::string FileDialog::completed() const {
+  std::optional<std::string> common;
+  for (const Entry& entry : entries_) {
+    if (!startsIgnoringCase(entry.name, name_)) continue;
+    if (!common) common = entry.name;
+    std::size_t same = 0;
+    while (same < common->size() && same < entry.name.size() && (*common)[same] == entry.name[same]) ++same;
+    common->resize(same);
+  }
+  return common && common->size() > name_.size() ? *common : name_;
+}
+
+/// Tab completes the name, arrows go through the list.
+int FileDialog::followKeys(ImGuiInputTextCallbackData* data) {
+  FileDialog& dialog = *static_cast<FileDialog*>(data->UserData);
+  dialog.name_.assign(data->Buf, std::size_t(data->BufTextLen));
+  if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) {
+    dialog.typed_ = dialog.name_.find('/') == std::string::npos && !proceduralName(dialog.name_) ? dialog.name_ : "";
+    return 0;
+  }
+  const bool completes = data->EventFlag == ImGuiInputTextFlags_CallbackCompletion;
+  const std::string name = completes ? dialog.completed() : dialog.next(data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
+  if (completes) dialog.typed_ = name;
+  data->DeleteChars(0, data->BufTextLen);
+  data->InsertChars(0, name.c_str());
+  return 0;
 }
 
 /// The frames of a sequence are one entry beside the files themselves.
@@ -196,15 +284,23 @@ void FileDialog::drawPlaces() {
 }
 
 void FileDialog::drawList() {
-  constexpr ImGuiTableFlags kFlags = ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit;
+  constexpr ImGuiTableFlags kFlags =
+      ImGuiTableFlags_ScrollY | ImGuiTableFlags_RowBg | ImGuiTableFlags_SizingFixedFit | ImGuiTableFlags_Sortable;
   if (!ImGui::BeginTable("files", 3, kFlags)) return;
   ImGui::TableSetupScrollFreeze(0, 1);
   ImGui::TableSetupColumn("Name", ImGuiTableColumnFlags_WidthStretch);
   ImGui::TableSetupColumn("Size");
   ImGui::TableSetupColumn("Changed");
   ImGui::TableHeadersRow();
+  if (ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs(); specs != nullptr && specs->SpecsDirty && specs->SpecsCount > 0) {
+    sortedBy_ = Column(specs->Specs[0].ColumnIndex);
+    descends_ = specs->Specs[0].SortDirection == ImGuiSortDirection_Descending;
+    specs->SpecsDirty = false;
+    sort();
+  }
   std::string chosen;
   for (const Entry& entry : entries_) {
+    if (!isListed(entry)) continue;
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     constexpr ImGuiSelectableFlags kRow = ImGuiSelectableFlags_SpanAllColumns;
@@ -217,6 +313,7 @@ void FileDialog::drawList() {
       if (again) chosen = entry.name;
     }
     ImGui::PopID();
+    if (entry.name == name_ && followed_ != name_) ImGui::SetScrollHereY();
     ImGui::SameLine(0.0f, 0.0f);
     ImGui::TextUnformatted(entry.shown.c_str());  // of a label, what follows the ## of a sequence's name would not be seen
     ImGui::TableNextColumn();
@@ -229,6 +326,7 @@ void FileDialog::drawList() {
     ImGui::TableNextColumn();
     ImGui::TextDisabled("No file of a known kind; \"All files\" shows the other %zu.", hidden_);
   }
+  followed_ = name_;
   ImGui::EndTable();
   if (!chosen.empty()) confirm(chosen);  // which may replace the entries
 }
@@ -263,7 +361,7 @@ bool FileDialog::drawTile(const std::string& file, const std::string& label) {
     ImGui::SetTooltip("%s", file.c_str());
   }
   list.PushClipRect(low, {high.x, high.y + ImGui::GetTextLineHeightWithSpacing()}, true);
-  list.AddText({low.x, high.y + 2.0f}, ImGui::GetColorU32(ImGuiCol_Text), label.c_str());
+  list.AddText({low.x, high.y + 2.0f}, ImGui::GetColorU32(ImGuiCol_Text), shortened(label, size.x).c_str());
   list.PopClipRect();
   ImGui::EndGroup();
   ImGui::PopID();
@@ -296,9 +394,11 @@ void FileDialog::drawName() {
   ImGui::SetNextItemWidth(-1.0f);
   if (focus_ || !ImGui::IsAnyItemActive()) ImGui::SetKeyboardFocusHere();  // what is typed is a name
   focus_ = false;
-  const bool entered =
-      ImGui::InputTextWithHint("##name", saves_ ? "" : "a file, a folder, smoke_####.vdb or procedural:cloud", &name_,
-                               ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll);
+  const bool entered = ImGui::InputTextWithHint("##name", saves_ ? "" : "a file, a folder, smoke_####.vdb or procedural:cloud", &name_,
+                                                ImGuiInputTextFlags_EnterReturnsTrue | ImGuiInputTextFlags_AutoSelectAll |
+                                                    ImGuiInputTextFlags_CallbackCompletion | ImGuiInputTextFlags_CallbackHistory |
+                                                    ImGuiInputTextFlags_CallbackEdit,
+                                                followKeys, this);
   if (!problem_.empty())
     drawSentence(problem_, false);
   else if (replaces)

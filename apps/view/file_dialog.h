@@ -12,6 +12,8 @@
 #include "apps/view/session_store.h"
 #include "engine/vulkan/texture.h"
 
+struct ImGuiInputTextCallbackData;
+
 namespace freevoxels {
 
 class FileDialog {
@@ -38,14 +40,21 @@ class FileDialog {
     bool isFolder() const { return name.ends_with('/'); }
   };
 
+  enum class Column { Name, Size, Changed };
+
   void begin(const char* title, std::vector<std::string> endings, std::function<void(const std::string&)> chosen);
   void go(std::filesystem::path folder);
   void addFiles(const std::vector<std::filesystem::directory_entry>& files);
+  void sort();
+  bool isListed(const Entry& entry) const;
   void drawPlaces();
   void drawList();
   void drawRecent();
   bool drawTile(const std::string& file, const std::string& label);
   void drawName();
+  static int followKeys(ImGuiInputTextCallbackData* data);
+  std::string next(int step) const;
+  std::string completed() const;
   void confirm(const std::string& name);
   const Texture* thumbnail(const std::string& file);
 
@@ -59,6 +68,10 @@ class FileDialog {
   std::string clicked_;     ///< the entry that was clicked last, at `clickedAt_` seconds
   double clickedAt_ = 0.0;
   std::string title_, name_, problem_;
+  std::string followed_;  ///< the name whose entry was scrolled to
+  std::string typed_;     ///< the part of a name to open that was typed: entries without it are not listed
+  Column sortedBy_ = Column::Name;
+  bool descends_ = false, hasBegun_ = false;
   std::vector<std::string> endings_;
   std::function<void(const std::string&)> chosen_;
   bool saves_ = false, asked_ = false, focus_ = false, showsRecent_ = false, all_ = false, isOpen_ = false;

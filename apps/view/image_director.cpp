@@ -83,6 +83,7 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
   if (&thread == &quick_) refines_ = false;
   if (!result.drawn) {
     state.problem = result.problem;
+    spdlog::debug("no image: {}", result.problem);
     failure = result.failure;
     if (&thread == &whole_) failed_ = result.number;
     return false;
@@ -224,6 +225,7 @@ void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
     if (state.changed) ++revision_, noteEdit(state.scene);
     lastChange_ = now;
     ++lastRequest_;
+    volumes_.mayRead();
     refines_ = false;
     if (!state.changed || !mix(state)) askOfChange(state);
     asked_ = state.scene;
@@ -249,8 +251,9 @@ void ImageDirector::end() {
 }
 
 std::optional<std::pair<std::string, double>> ImageDirector::activity() const {
-  const auto activity = whole_.activity();
-  return activity ? activity : quick_.activity();
+  const auto whole = whole_.activity(), activity = whole ? whole : quick_.activity();
+  if (const auto read = volumes_.reading(); read && activity) return std::pair(activity->first, *read);
+  return activity;
 }
 
 }  // namespace freevoxels

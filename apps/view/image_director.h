@@ -33,6 +33,9 @@ class ImageDirector {
   /// Whether there are layers of the image, of which it is mixed at once when colours change.
   bool mayMix(const ViewState& state) const { return layered_ && layered_->layers->fit(state.scene); }
   std::optional<std::pair<std::string, double>> activity() const;
+  /// Whether a file is being read; gives that up, so that there is no image until something changes.
+  bool reads() const { return volumes_.reading().has_value(); }
+  void giveUpReading() { volumes_.giveUp(); }
 
   /// Abandons everything, for good, without waiting for that.
   void end();

@@ -10,6 +10,7 @@
 #include "apps/common/failure.h"
 #include "apps/common/scene_options.h"
 #include "engine/core/error.h"
+#include "engine/core/machine.h"
 #include "engine/description/scene_fields.h"
 #include "engine/image/display_pass.h"
 #include "engine/volume/coarse_volume.h"
@@ -36,9 +37,9 @@ std::string nameOf(const SceneDescription& scene, bool clipped) {
                      nameOf(scene.classification.grid()));
 }
 
-Volume readFrame(const SceneDescription& scene, std::uint64_t maximumVoxels) {
+Volume readFrame(const SceneDescription& scene, std::uint64_t maximumVoxels, const Progress& progress) {
   try {
-    return scene.readVolume(maximumVoxels, 0, {}, true);
+    return scene.readVolume(maximumVoxels, 0, progress, true);
   } catch (const EmptyVolumeError&) {
     return {.source = scene.input.volume, .dimensions = glm::ivec3(1), .scalars = ScalarBricks(glm::ivec3(1))};
   }
@@ -65,9 +66,10 @@ std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene, b
     SceneDescription unclipped = scene;
     unclipped.input.clipBox.reset();
     unclipped.input.clipPlane.reset();
-    whole_ = std::make_shared<const Volume>(isFrame ? readFrame(unclipped, maximumVoxels_) : unclipped.readVolume(maximumVoxels_));
-    logWarnings(*whole_, false);
-    logAssumptions(*whole_);
+    if (!isFrame) frames_.clear();
+    const auto kept = std::ranges::find(frames_, name, [](const auto& frame) { return frame.first; });
+    whole_ = kept != frames_.end() ? kept->second : readWhole(unclipped, isFrame);
+    if (isFrame) keepFrame(name, whole_);
     name_ = name;
   }
   clipped_ = scene.input.clipBox || scene.input.clipPlane ? std::make_shared<const Volume>(scene.input.clip(*whole_)) : whole_;
@@ -86,9 +88,44 @@ std::shared_ptr<const FilmView> VolumeCache::viewOf(const SceneDescription& scen
   return film_;
 }
 
-glm::ivec3 VolumeCache::wholeDimensions() const {
+std::shared_ptr<const Volume> VolumeCache::readWhole(const SceneDescription& scene, bool isFrame) {
+  const Progress progress = [&](std::string_view, double fraction) {
+    if (givesUp_) fail(ErrorKind::Input, "reading '{}' was given up: open it again to read it", scene.input.volume);
+    read_ = fraction;
+  };
+  struct Ended {
+    std::atomic<double>& read;
+    ~Ended() { read = kNotReading; }
+  } ended{read_};
+  progress("", 0.0);
+  auto volume =
+      std::make_shared<const Volume>(isFrame ? readFrame(scene, maximumVoxels_, progress) : scene.readVolume(maximumVoxels_, 0, progress));
+  logWarnings(*volume, false);
+  logAssumptions(*volume);
+  return volume;
+}
+
+/// With as many frames before it as take little of the machine's memory.
+void VolumeCache::keepFrame(const std::string& name, const std::shared_ptr<const Volume>& volume) {
+  constexpr std::uint64_t kPartOfMemory = 8;
+  std::erase_if(frames_, [&](const auto& frame) { return frame.first == name; });
+  frames_.emplace_back(name, volume);
+  const auto bytes = [&] {
+    std::uint64_t sum = 0;
+    for (const auto& frame : frames_) forEachGrid([&](const ScalarBricks& grid) { sum += grid.bytes(); }, *frame.second);
+    return sum;
+  };
+  while (frames_.size() > 1 && bytes() > machineMemoryBytes() / kPartOfMemory) frames_.pop_front();
+}
+
+std::optional<double> VolumeCache::reading() const {
+  const double fraction = read_;
+  return fraction == kNotReading ? std::nullopt : std::optional(fraction);
+}
+
+std::shared_ptr<const Volume> VolumeCache::whole() const {
   const std::lock_guard lock(mutex_);
-  return whole_ ? whole_->dimensions : glm::ivec3(0);
+  return whole_;
 }
 
 ImageMaker::ImageMaker(const Device& device, VolumeCache& volumes)
@@ -160,11 +197,8 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   if (progress) progress(before == input_ ? "preparing" : "reading " + input_, 0.0);
   const std::shared_ptr<const FilmView> film = request.film.empty() ? nullptr : volumes_.viewOf(request.scene, request.film);
   if (!request.film.empty() && !film) fail(ErrorKind::Input, "no frame of the sequence holds anything to draw");
-  DrawnImage drawn{.request = request,
-                   .scene = resolve(request, film.get()),
-                   .film = film,
-                   .wholeDimensions = volumes_.wholeDimensions(),
-                   .device = device_.description()};
+  DrawnImage drawn{
+      .request = request, .scene = resolve(request, film.get()), .film = film, .whole = volumes_.whole(), .device = device_.description()};
   if (drawn.scene.volume->madeOf == MadeOf::Channels) drawn.channels = request.scene.shownChannels();
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const VolumeSource> source = coarse(drawn.scene, request.voxelsAlongEdge);

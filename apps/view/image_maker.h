@@ -1,10 +1,13 @@
 #pragma once
 // Makes the images of the viewer's options, as `freevoxels render` does, of a volume that is read once.
 
+#include <atomic>
+#include <deque>
 #include <memory>
 #include <mutex>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/common/color_layers.h"
@@ -24,16 +27,29 @@ class VolumeCache {
   VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume);
 
   /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it. A frame of a
-  /// sequence may lack grids, and is a voxel without data if it holds nothing.
+  /// sequence may lack grids, and is a voxel without data if it holds nothing. Fails with ErrorKind::Input if reading is given up.
   std::shared_ptr<const Volume> read(const SceneDescription& scene, bool isFrame = false);
+  /// Gives up what is being read, and all that is to be read until mayRead() is called.
+  void giveUp() { givesUp_ = true; }
+  void mayRead() { givesUp_ = false; }
+  /// The fraction of the file that has been read; nothing while none is.
+  std::optional<double> reading() const;
   /// How the files of a sequence are seen as a whole (film_view.h); null if none can be drawn. Chosen once.
   std::shared_ptr<const FilmView> viewOf(const SceneDescription& scene, const std::vector<std::string>& files);
-  /// The size of its box before it was clipped.
-  glm::ivec3 wholeDimensions() const;
+  /// The same before it was clipped; null if it was not read here.
+  std::shared_ptr<const Volume> whole() const;
 
  private:
+  std::shared_ptr<const Volume> readWhole(const SceneDescription& scene, bool isFrame);
+  void keepFrame(const std::string& name, const std::shared_ptr<const Volume>& volume);
+
   const std::uint64_t maximumVoxels_;
+  std::atomic<bool> givesUp_ = false;
+  static constexpr double kNotReading = -1.0;
+  std::atomic<double> read_ = kNotReading;
   mutable std::mutex mutex_;
+  /// Frames of a sequence that were read before, the last one at the end, for when it is played again.
+  std::deque<std::pair<std::string, std::shared_ptr<const Volume>>> frames_;
   std::string name_, clippedName_;
   std::shared_ptr<const Volume> whole_, clipped_;
   std::string filmName_;
@@ -70,7 +86,7 @@ struct DrawnImage {
   ImageRequest request;    ///< the request that it answers
   Scene scene;               ///< the resolved scene, with all voxels of the volume
   std::shared_ptr<const FilmView> film;  ///< of which that scene was chosen; null if it was for the volume alone
-  glm::ivec3 wholeDimensions{0};  ///< of the volume's box before it was clipped
+  std::shared_ptr<const Volume> whole;   ///< the scene's volume before it was clipped; null where it was not read with its clipping
   DeviceDescription device;  ///< device that made it
   std::shared_ptr<const FrameTargets> image;     ///< on the device, which must outlive the image
   std::shared_ptr<const RenderTarget> shown;     ///< the same image, or the diagnosis in its place

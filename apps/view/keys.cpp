@@ -19,6 +19,16 @@ int keyOfLayout(int key) {
   return name[0] == '.' ? GLFW_KEY_PERIOD : key;
 }
 
+namespace {
+
+/// Where a menu or a list is open, Enter chooses its entry, as the space bar does in Dear ImGui.
+bool isEnterOfMenus(int key, bool down) {
+  const bool isEnter = key == GLFW_KEY_ENTER || key == GLFW_KEY_KP_ENTER;
+  return isEnter && (!down || (ImGui::GetIO().ConfigFlags & ImGuiConfigFlags_NavEnableKeyboard) != 0);
+}
+
+}  // namespace
+
 #if IMGUI_VERSION_NUM < 18700
 
 bool isKeyPressed(int key, bool repeats) {
@@ -30,7 +40,9 @@ bool isKeyDown(int key) {
 }
 
 void giveKey(GLFWwindow* window, int key, bool down) {
-  ImGui_ImplGlfw_KeyCallback(window, key, 0, down ? GLFW_PRESS : GLFW_RELEASE, 0);
+  const int action = down ? GLFW_PRESS : GLFW_RELEASE;
+  ImGui_ImplGlfw_KeyCallback(window, key, 0, action, 0);
+  if (isEnterOfMenus(key, down)) ImGui_ImplGlfw_KeyCallback(window, GLFW_KEY_SPACE, 0, action, 0);
 }
 
 void keepTab() {
@@ -118,6 +130,7 @@ void giveKey(GLFWwindow*, int key, bool down) {
   if (key == GLFW_KEY_TAB && (!down || !io.WantTextInput)) io.AddKeyEvent(kTabOfViewer, down);
   if (key == GLFW_KEY_TAB && down && !io.WantTextInput) return;
   if (const ImGuiKey named = namedKey(key); named != ImGuiKey_None) io.AddKeyEvent(named, down);
+  if (isEnterOfMenus(key, down)) io.AddKeyEvent(ImGuiKey_Space, down);
 }
 
 void keepTab() {}  // giveKey() does

@@ -199,7 +199,7 @@ bool drawLights(LightingDescription& options, const Camera& camera, const Volume
 }
 
 void LightPanel::draw(ViewState& state) {
-  if (!ImGui::CollapsingHeader("Light") || !state.latest || !state.camera) return;
+  if (!panelHeader("Light", state.latest && state.camera, false)) return;
   ImGui::PushID("light");
   LightingDescription& options = state.scene.lighting;
   const bool lit = options.hasLight() && !options.unlit;

@@ -272,7 +272,7 @@ bool ClassificationPanel::drawFile(ViewState& state) {
 
 void LookPanel::draw(ViewState& state, GridList& grids) {
   if (state.latest) classification_.follow(state);
-  if (!ImGui::CollapsingHeader("Look", ImGuiTreeNodeFlags_DefaultOpen) || !state.latest) return;
+  if (!panelHeader("Look", state.latest != nullptr, true)) return;
   const bool isFixed = state.latest->scene.volume->classificationIsFixed;
   if (isFixed) drawSentence("The file was baked for this look alone: bake it with --keep-scalars to change it.", false);
   ImGui::BeginDisabled(isFixed);

@@ -45,6 +45,14 @@ glm::ivec2 axesAcross(int axis, int up) {
   return axis == 0 ? glm::ivec2(other, up) : glm::ivec2(0, axis == up ? other : up);
 }
 
+char patientSide(const Volume& volume, int axis, bool opposite) {
+  if (volume.lengthUnit != "mm" || volume.up != glm::dvec3(0.0, 0.0, 1.0)) return 0;
+  const glm::dvec3 direction = glm::dvec3(volume.indexToWorld[axis]) * (opposite ? -1.0 : 1.0), size = glm::abs(direction);
+  if (size.x >= size.y && size.x >= size.z) return direction.x > 0.0 ? 'L' : 'R';
+  if (size.y >= size.z) return direction.y > 0.0 ? 'P' : 'A';
+  return direction.z > 0.0 ? 'S' : 'I';
+}
+
 std::vector<std::uint8_t> sliceTexels(const Volume& volume, const Classification& colors, int axis, int voxel) {
   const glm::ivec2 axes = axesAcross(axis, upAxis(volume)), size(volume.dimensions[axes.x], volume.dimensions[axes.y]);
   SlicePixels pixels{.corner = glm::dvec3(-0.5)};
@@ -56,7 +64,7 @@ std::vector<std::uint8_t> sliceTexels(const Volume& volume, const Classification
 }
 
 void SliceView::follow(const ViewState& state) {
-  const std::shared_ptr<const Volume>& volume = state.latest->scene.volume;
+  const std::shared_ptr<const Volume>& volume = state.latest->whole ? state.latest->whole : state.latest->scene.volume;
   const ClassificationDescription& classification = state.latest->request.scene.classification;
   const std::string text = textOf({.classification = classification}, {"classification"});
   if (volume == volume_ && text == colorsText_) return;
@@ -65,7 +73,47 @@ void SliceView::follow(const ViewState& state) {
   const bool sameBox = volume_ && volume_->dimensions == volume->dimensions;  // as of the frames of a sequence
   volume_ = volume;
   if (!sameBox) voxel_ = volume->dimensions / 2;
-  for (Slice& slice : slices_) slice.texture = nullptr;
+  for (Slice& slice : slices_) {
+    slice.texture = nullptr;
+    if (!sameBox) slice = {};
+  }
+}
+
+/// `size` is that of the unzoomed slice, `middle` that of its room.
+void SliceView::zoom(Slice& slice, ImVec2 middle, ImVec2 size) const {
+  const ImGuiIO& io = ImGui::GetIO();
+  constexpr float kStep = 1.25f, kMost = 32.0f;
+  if (ImGui::IsItemActive() && io.MouseDown[ImGuiMouseButton_Middle]) {
+    slice.shift.x += io.MouseDelta.x / size.x;
+    slice.shift.y += io.MouseDelta.y / size.y;
+  }
+  if (!ImGui::IsItemHovered()) return;
+  if (ImGui::IsMouseDoubleClicked(ImGuiMouseButton_Left)) {
+    slice.zoom = 1.0f;
+    slice.shift = {0.0f, 0.0f};
+  }
+  if (!io.KeyCtrl || io.MouseWheel == 0.0f) return;
+  // What is under the mouse stays there.
+  const float before = slice.zoom;
+  slice.zoom = std::clamp(before * std::pow(kStep, io.MouseWheel), 1.0f, kMost);
+  const ImVec2 mouse((io.MousePos.x - middle.x) / size.x, (io.MousePos.y - middle.y) / size.y);
+  slice.shift.x = mouse.x - (mouse.x - slice.shift.x) * slice.zoom / before;
+  slice.shift.y = mouse.y - (mouse.y - slice.shift.y) * slice.zoom / before;
+}
+
+/// The sides of the patient at the borders of a slice's room.
+void SliceView::drawSides(int axis, ImVec2 low, ImVec2 high) const {
+  const glm::ivec2 axes = axesAcross(axis, upAxis(*volume_));
+  const ImVec2 middle(0.5f * (low.x + high.x), 0.5f * (low.y + high.y)), size = ImGui::CalcTextSize("A");
+  const auto draw = [&](char letter, ImVec2 place) {
+    if (letter == 0) return;
+    const char text[] = {letter, '\0'};
+    ImGui::GetWindowDrawList()->AddText({place.x - 0.5f * size.x, place.y - 0.5f * size.y}, IM_COL32(235, 225, 160, 255), text);
+  };
+  draw(patientSide(*volume_, axes.x, true), {low.x + size.x, middle.y});
+  draw(patientSide(*volume_, axes.x, false), {high.x - size.x, middle.y});
+  draw(patientSide(*volume_, axes.y, true), {middle.x, high.y - 0.6f * size.y});
+  draw(patientSide(*volume_, axes.y, false), {middle.x, low.y + 0.6f * size.y});
 }
 
 void SliceView::handle(int axis, const ImageFrame& frame) {
@@ -76,10 +124,9 @@ void SliceView::handle(int axis, const ImageFrame& frame) {
   under[axes.x] = int(std::floor((io.MousePos.x - frame.low.x) / frame.size().x * float(volume_->dimensions[axes.x])));
   under[axes.y] = int(std::floor((frame.high.y - io.MousePos.y) / frame.size().y * float(volume_->dimensions[axes.y])));
   const bool inside = glm::clamp(under, glm::ivec3(0), last) == under;
-  if (ImGui::IsItemActive()) voxel_ = glm::clamp(under, glm::ivec3(0), last);
+  if (ImGui::IsItemActive() && io.MouseDown[ImGuiMouseButton_Left]) voxel_ = glm::clamp(under, glm::ivec3(0), last);
   if (!ImGui::IsItemHovered()) return;
-  if (io.MouseWheel != 0.0f)
-    voxel_[axis] = std::clamp(voxel_[axis] + (io.MouseWheel > 0.0f ? 1 : -1), 0, last[axis]);
+  if (io.MouseWheel != 0.0f && !io.KeyCtrl) voxel_[axis] = std::clamp(voxel_[axis] + (io.MouseWheel > 0.0f ? 1 : -1), 0, last[axis]);
   if (!inside) return;
   const float value = volume_->scalars.at(under);
   const std::string text = value == kInactiveVoxel ? "no data" : fmt::format("{:.5g}", value);
@@ -98,13 +145,16 @@ void SliceView::drawSlice(int axis, ImVec2 size) {
   const double width = voxelEdge(*volume_, axes.x) * volume_->dimensions[axes.x];
   const double height = voxelEdge(*volume_, axes.y) * volume_->dimensions[axes.y];
   const double pixels = std::min(double(size.x) / width, double(size.y) / height);
-  const ImVec2 corner = ImGui::GetCursorScreenPos();
-  const ImVec2 low(corner.x + 0.5f * (size.x - float(pixels * width)), corner.y + 0.5f * (size.y - float(pixels * height)));
-  const ImageFrame frame{low, {low.x + float(pixels * width), low.y + float(pixels * height)}};
+  const ImVec2 corner = ImGui::GetCursorScreenPos(), middle(corner.x + 0.5f * size.x, corner.y + 0.5f * size.y);
+  const ImVec2 whole(float(pixels * width), float(pixels * height)), zoomed(slice.zoom * whole.x, slice.zoom * whole.y);
+  const ImVec2 low(middle.x + slice.shift.x * whole.x - 0.5f * zoomed.x, middle.y + slice.shift.y * whole.y - 0.5f * zoomed.y);
+  const ImageFrame frame{low, {low.x + zoomed.x, low.y + zoomed.y}};
   const char* const name = axis == 0 ? "sagittal" : axis == upAxis(*volume_) ? "axial" : "coronal";
-  ImGui::InvisibleButton(name, size);
+  ImGui::InvisibleButton(name, size, ImGuiButtonFlags_MouseButtonLeft | ImGuiButtonFlags_MouseButtonMiddle);
+  zoom(slice, middle, whole);
   handle(axis, frame);
   ImDrawList& list = *ImGui::GetWindowDrawList();
+  list.PushClipRect(corner, {corner.x + size.x, corner.y + size.y}, true);
   list.AddImage(textureId(*slice.texture), frame.low, frame.high);
   const auto place = [&](int along, float least, float most) {
     return least + (float(voxel_[along]) + 0.5f) / float(volume_->dimensions[along]) * (most - least);
@@ -116,6 +166,8 @@ void SliceView::drawSlice(int axis, ImVec2 size) {
   list.AddRect(frame.low, frame.high, kColors[std::size_t(axis)]);
   const std::string title = fmt::format("{}  {} = {}", name, "xyz"[axis], voxel_[axis]);
   list.AddText({corner.x + 5.0f, corner.y + 2.0f}, kColors[std::size_t(axis)], title.c_str());
+  drawSides(axis, corner, {corner.x + size.x, corner.y + size.y});
+  list.PopClipRect();
 }
 
 void SliceView::draw(const ViewState& state) {

@@ -100,7 +100,7 @@ void addBookmark(ViewState& state, SessionStore& store) {
 }
 
 void drawViewPanel(ViewState& state, SessionStore& store) {
-  if (!ImGui::CollapsingHeader("View", ImGuiTreeNodeFlags_DefaultOpen) || !state.camera) return;
+  if (!panelHeader("View", state.camera.has_value(), true)) return;
   ImGui::PushID("view");
   drawBackground(state);
   if (ImGui::TreeNode("Camera")) {

@@ -87,29 +87,24 @@ void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<Cli
   changed = true;
 }
 
-void EditHistory::follow(const Edits& now, bool changed, bool busy) {
-  if (changed && settled_ && !open_) {
-    past_.push_back(*settled_);
-    if (past_.size() > kMax) past_.pop_front();
-    future_.clear();
-    open_ = true;
-  }
-  if (changed || busy || !now.camera) return;
-  open_ = false;
-  settled_ = now;
-}
-
-void EditHistory::step(ViewState& state, std::deque<Edits>& from, std::deque<Edits>& to) {
-  if (from.empty()) return;
-  to.push_back(state);
+void EditHistory::restore(ViewState& state, std::optional<Edits> edits) {
+  if (!edits) return;
   const glm::ivec2 size = state.scene.camera.size;
-  static_cast<Edits&>(state) = std::move(from.back());
-  from.pop_back();
+  const std::optional<Camera> camera = state.scene.input.volume == edits->scene.input.volume ? state.camera : std::nullopt;
+  static_cast<Edits&>(state) = *std::move(edits);
   state.scene.camera.size = size;
+  if (camera && state.camera) {
+    state.camera = camera;
+    state.scene.camera.look(*camera);
+  }
   state.problem.clear();
   state.changed = true;
-  settled_ = state;
-  open_ = false;
+}
+
+void CameraHistory::follow(const ViewState& state, bool moved, bool busy) {
+  if (state.scene.input.volume != volume_) steps_ = {};
+  volume_ = state.scene.input.volume;
+  if (state.camera) steps_.follow(*state.camera, moved, busy);
 }
 
 }  // namespace freevoxels

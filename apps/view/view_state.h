@@ -5,6 +5,7 @@
 #include <memory>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/common/sequence.h"
@@ -69,25 +70,82 @@ struct ViewState : Edits {
   void clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane);
 };
 
-/// Earlier states of the edits. All changes between two moments in which the user does nothing are one step.
-class EditHistory {
+/// Earlier states of what the user changes. All changes between two moments in which the user does nothing are one step.
+template <typename State>
+class Steps {
  public:
-  /// Called once a frame. `changed`: the edits were changed by the user since the last call. `busy`: more of the same change may
-  /// follow, such as while a mouse button is down.
-  void follow(const Edits& now, bool changed, bool busy);
+  /// Called once a frame. `changed`: the user has changed the state since the last call. `busy`: more of the same change may follow, such
+  /// as while a mouse button is down.
+  void follow(const State& now, bool changed, bool busy) {
+    if (changed && settled_ && !open_) {
+      past_.push_back(*settled_);
+      if (past_.size() > kMax) past_.pop_front();
+      future_.clear();
+      open_ = true;
+    }
+    if (changed || busy) return;
+    open_ = false;
+    settled_ = now;
+  }
   bool canUndo() const { return !past_.empty(); }
   bool canRedo() const { return !future_.empty(); }
-  /// Restores the state before the last step, with the current image size. Does nothing if there is none.
-  void undo(ViewState& state) { step(state, past_, future_); }
-  void redo(ViewState& state) { step(state, future_, past_); }
+  /// The state before the last step, which is then the current one; nothing if there is none.
+  std::optional<State> undo(const State& now) { return step(now, past_, future_); }
+  std::optional<State> redo(const State& now) { return step(now, future_, past_); }
 
  private:
   static constexpr std::size_t kMax = 200;
-  void step(ViewState& state, std::deque<Edits>& from, std::deque<Edits>& to);
 
-  std::deque<Edits> past_, future_;
-  std::optional<Edits> settled_;  ///< when the user last did nothing
+  std::optional<State> step(const State& now, std::deque<State>& from, std::deque<State>& to) {
+    if (from.empty()) return std::nullopt;
+    to.push_back(now);
+    settled_ = std::move(from.back());
+    from.pop_back();
+    open_ = false;
+    return settled_;
+  }
+
+  std::deque<State> past_, future_;
+  std::optional<State> settled_;  ///< when the user last did nothing
   bool open_ = false;             ///< whether the last step may get more changes
+};
+
+/// The history of the edits. The camera is no edit: it stays where it is, unless another volume is shown.
+class EditHistory {
+ public:
+  /// As Steps::follow().
+  void follow(const Edits& now, bool changed, bool busy) {
+    if (changed || now.camera) steps_.follow(now, changed, busy);
+  }
+  bool canUndo() const { return steps_.canUndo(); }
+  bool canRedo() const { return steps_.canRedo(); }
+  /// Restores the state before the last step, with the current image size. Does nothing if there is none.
+  void undo(ViewState& state) { restore(state, steps_.undo(state)); }
+  void redo(ViewState& state) { restore(state, steps_.redo(state)); }
+
+ private:
+  static void restore(ViewState& state, std::optional<Edits> edits);
+
+  Steps<Edits> steps_;
+};
+
+/// The cameras from which a volume was seen.
+class CameraHistory {
+ public:
+  /// As Steps::follow().
+  void follow(const ViewState& state, bool moved, bool busy);
+  bool canGoBack() const { return steps_.canUndo(); }
+  bool canGoForward() const { return steps_.canRedo(); }
+  void goBack(ViewState& state) { go(state, steps_.undo(*state.camera)); }
+  void goForward(ViewState& state) { go(state, steps_.redo(*state.camera)); }
+
+ private:
+  static void go(ViewState& state, const std::optional<Camera>& camera) {
+    if (camera) state.setCamera(*camera);
+  }
+
+  std::string volume_;  ///< that was seen
+  Steps<Camera> steps_;
 };
 
 }  // namespace freevoxels

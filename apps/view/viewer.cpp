@@ -9,6 +9,8 @@
 #include <cstdlib>
 #include <filesystem>
 #include <thread>
+#include <utility>
+#include <vector>
 
 #include "apps/common/failure.h"
 #include "apps/common/frame_names.h"
@@ -29,8 +31,8 @@ namespace {
 
 constexpr std::array kDeviceExtensions{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
 constexpr glm::ivec2 kWindowSize{1280, 800};
-constexpr float kPanelWidth = 340.0f;
-constexpr float kSlicesShare = 0.3f;  // of the image's width
+constexpr float kPanelWidth = 340.0f, kMinPanelWidth = 240.0f;
+constexpr float kMinSlicesShare = 0.1f, kMaxSlicesShare = 0.8f;  // of the image's width
 
 constexpr std::chrono::milliseconds kPaint{60};      // between frames while an image is made that is wanted soon
 constexpr std::chrono::milliseconds kFade{140};      // from a quick image to the whole one
@@ -130,6 +132,8 @@ std::array<ActionState, kActions> Viewer::actionStates() const {
   of(Action::RestoreScene).enabled = !store_.lastScene().empty() && std::filesystem::exists(store_.lastScene(), unknown);
   of(Action::Undo).enabled = history_.canUndo();
   of(Action::Redo).enabled = history_.canRedo();
+  of(Action::PreviousView).enabled = cameras_.canGoBack();
+  of(Action::NextView).enabled = cameras_.canGoForward();
   for (const Action action : {Action::CopyImage, Action::CopyCommand}) of(action).enabled = state_.whole != nullptr;
   of(Action::Axes).ticked = state_.overlays.axes;
   of(Action::Box).ticked = state_.overlays.box;
@@ -159,6 +163,10 @@ void Viewer::perform(Action action) {
     case Action::Quit: return window_.close();
     case Action::Undo: return history_.undo(state_);
     case Action::Redo: return history_.redo(state_);
+    case Action::PreviousView:
+      return cameras_.canGoBack() ? cameras_.goBack(state_) : void();
+    case Action::NextView:
+      return cameras_.canGoForward() ? cameras_.goForward(state_) : void();
     case Action::CopyImage: return export_.copyImage();
     case Action::CopyCommand: return ExportPanel::copyCommand(state_);
     case Action::AddBookmark: return addBookmark(state_, store_);
@@ -169,7 +177,8 @@ void Viewer::perform(Action action) {
     case Action::Slices: return flip(state_.overlays.slices);
     case Action::Panel: return flip(showsPanel_);
     case Action::Keys: return flip(showsKeys_);
-    case Action::Cancel: return export_.cancel();
+    case Action::Cancel:
+      return director_.reads() ? director_.giveUpReading() : export_.cancel();
     default:
       return changeView(action);
   }
@@ -178,8 +187,11 @@ void Viewer::perform(Action action) {
 void Viewer::drawSidePanel(float top, float width, float height) {
   beginPart("panels", {0.0f, top}, {width - kSplitterWidth * window_.contentScale(), height}, ImGui::GetStyle().WindowPadding);
   volume_.draw(state_, grids_);
+  // Of the older image, whose rows stay where they are.
+  ImGui::BeginDisabled(isOpening() && state_.latest);
   look_.draw(state_, grids_);
   light_.draw(state_);
+  ImGui::EndDisabled();
   drawViewPanel(state_, store_);
   export_.draw(state_);
   drawInspectPanel(state_);
@@ -192,17 +204,39 @@ bool Viewer::isOpening() const {
   return !state_.latest || state_.latest->request.scene.input.volume != openedVolume_;
 }
 
-/// Dims the older image, and says why there is no newer one.
-void Viewer::drawOpening() const {
+/// Dims the older image, and says why there is no newer one, with what else can be opened.
+void Viewer::drawOpening() {
   const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
   ImDrawList& list = *ImGui::GetWindowDrawList();
   if (state_.latest) list.AddRectFilled(low, high, IM_COL32(24, 24, 26, 190));
   std::string text = state_.problem;
-  if (const auto activity = director_.activity(); activity && text.empty()) text = activity->first;
+  if (const auto activity = director_.activity(); activity && text.empty())
+    text = director_.reads() ? fmt::format("{}  {:.0f} %\nEscape gives it up", activity->first, 100.0 * activity->second) : activity->first;
   const float wrap = 0.8f * (high.x - low.x);
   const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
   const ImVec2 place(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y));
   list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), place, IM_COL32(235, 235, 238, 255), text.c_str(), nullptr, wrap);
+  if (!state_.problem.empty() && !options_.screenshot) drawOtherFiles({0.5f * (low.x + high.x), place.y + size.y});
+}
+
+/// Buttons around a place, for a window that shows nothing.
+void Viewer::drawOtherFiles(ImVec2 middle) {
+  constexpr std::size_t kMost = 4;
+  constexpr const char* kSample = "procedural:cloud";
+  const float width = 20.0f * ImGui::GetFontSize();
+  ImGui::SetCursorScreenPos({middle.x - 0.5f * width, middle.y + ImGui::GetFrameHeight()});
+  ImGui::BeginChild("other files", {width, float(kMost + 2) * ImGui::GetFrameHeightWithSpacing()});
+  if (ImGui::Button("Open... (Ctrl+O)", {-1.0f, 0.0f})) chosen_ = Action::Open;
+  std::vector<std::string> files = store_.recent();
+  std::erase(files, openedName(state_));
+  files.resize(std::min(files.size(), kMost));
+  if (std::ranges::count(files, kSample) == 0) files.emplace_back(kSample);
+  for (const std::string& file : files) {
+    const std::string label = proceduralName(file) ? file : std::filesystem::path(file).filename().string();
+    if (ImGui::Button(fmt::format("{}###{}", label, file).c_str(), {-1.0f, 0.0f})) wanted_ = file;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", file.c_str());
+  }
+  ImGui::EndChild();
 }
 
 void Viewer::drawImage(float left, float width, float top, float height) {
@@ -212,8 +246,8 @@ void Viewer::drawImage(float left, float width, float top, float height) {
                       .before = fades() ? before_.get() : nullptr,
                       .compared = comparedTexture_.get(),
                       .weight = since / std::chrono::duration<float>(kFade)});
-  if (isOpening()) drawOpening();
   if (state_.overlays.slices) slices_.drawOutlines(state_, {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()});
+  if (isOpening()) drawOpening();
   if (!options_.screenshot && !store_.knowsHowToTurn() && state_.camera) drawTurnHint();
   ImGui::End();
 }
@@ -243,13 +277,21 @@ void Viewer::drawWindow() {
   const float left = showsPanel_ ? panel : 0.0f;
   if (showsPanel_) {
     drawSidePanel(top, panel, height);
-    if (const std::optional<float> dragged = drawSplitter(panel, window_.contentScale(), top, height)) panelWidth_ = *dragged;
+    const float least = kMinPanelWidth * window_.contentScale();
+    if (const std::optional<float> dragged = drawSplitter("border of the panel", panel, window_.contentScale(), top, height))
+      panelWidth_ = std::clamp(*dragged, least, std::max(kMaxPanelShare * display.x, least));
   }
-  const float room = std::max(display.x - left, 1.0f), slices = state_.overlays.slices ? std::floor(kSlicesShare * room) : 0.0f;
+  const float room = std::max(display.x - left, 1.0f), slices = state_.overlays.slices ? std::floor(slicesShare_ * room) : 0.0f;
   drawImage(left, room - slices, top, height);
-  if (slices > 1.0f) drawSlices(left + room - slices, top, height);
+  if (slices > 1.0f) {
+    drawSlices(left + room - slices, top, height);
+    if (const std::optional<float> dragged =
+            drawSplitter("border of the slices", left + room - slices, window_.contentScale(), top, height))
+      slicesShare_ = std::clamp((left + room - *dragged) / room, kMinSlicesShare, kMaxSlicesShare);
+  }
   const auto writing = export_.activity();
-  drawStatusBar(state_, writing ? writing : director_.activity(), writing.has_value(), display.y - status, status);
+  const bool cancels = writing.has_value() || director_.reads();
+  drawStatusBar(state_, writing ? writing : director_.activity(), cancels, display.y - status, status);
   dialog_.draw();
   drawKeysWindow(showsKeys_);
 }
@@ -258,12 +300,14 @@ void Viewer::drawWindow() {
 void Viewer::act() {
   volume_.frames().follow(state_);
   bool restored = false;
-  const auto pressed = pressedAction();
+  if (const std::optional<std::string> file = std::exchange(wanted_, std::nullopt)) open(*file);
+  const auto pressed = pressedAction(dialog_.isOpen());
   for (const std::optional<Action> action : {pressed, chosen_}) {
     if (!action) continue;
     history_.follow(state_, false, false);  // it is a step of its own
+    cameras_.follow(state_, false, false);
     perform(*action);
-    restored |= *action == Action::Undo || *action == Action::Redo;
+    restored |= *action == Action::Undo || *action == Action::Redo || *action == Action::PreviousView || *action == Action::NextView;
   }
   if (restored) state_.bookmarks = store_.bookmarks(state_.scene.input.volume);  // maybe another volume
   if (area_.hasTurned()) store_.setKnowsHowToTurn();
@@ -271,11 +315,14 @@ void Viewer::act() {
   if (export_.waits()) volume_.frames().pause();  // for the whole image of this frame
   const bool plays = volume_.frames().plays();
   const Clock::time_point now = Clock::now();
-  edited_ = !plays && !restored && (state_.changed || state_.moved || state_.retoned);
-  if (edited_) lastEdit_ = now;
+  edited_ = !plays && !restored && (state_.changed || state_.retoned);
+  const bool moved = !plays && !restored && state_.moved && !state_.changed;
+  if (edited_ || moved) lastEdit_ = now;
   const ImGuiIO& io = ImGui::GetIO();
   const bool held = io.MouseDown[0] || io.MouseDown[1] || io.MouseDown[2] || (ImGui::IsAnyItemActive() && !dialog_.isOpen());
-  history_.follow(state_, edited_, held || plays || now - lastEdit_ < kOneEdit);
+  const bool busy = held || plays || now - lastEdit_ < kOneEdit;
+  history_.follow(state_, edited_, busy);
+  cameras_.follow(state_, moved, busy);
   if (state_.retoned) {
     newImage_ = state_.latest != nullptr;
     state_.retoned = false;
@@ -306,6 +353,7 @@ bool Viewer::paints() const {
 void Viewer::drawFrame() {
   const bool paint = paints();
   if (paint && !swapchain_.acquire()) return;
+  takeKeysOfPopups(dialog_.isOpen());
   window_.beginFrame();
   drawWindow();
   act();

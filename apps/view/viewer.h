@@ -56,7 +56,8 @@ class Viewer {
   void opened(const std::string& file);
   void rememberOpened();
   bool isOpening() const;
-  void drawOpening() const;
+  void drawOpening();
+  void drawOtherFiles(ImVec2 middle);
   void storeLastScene();
   double patience() const;
   void writeScreenshot() const;
@@ -72,6 +73,7 @@ class Viewer {
 
   ViewState state_;
   EditHistory history_;
+  CameraHistory cameras_;
   SessionStore store_;
   FileDialog dialog_;
   GridList grids_;
@@ -83,9 +85,10 @@ class Viewer {
   SliceView slices_;
   ImageDirector director_;
 
-  float panelWidth_;
+  float panelWidth_, slicesShare_ = 0.3f;  ///< of the image's width
   bool showsPanel_ = true, showsKeys_ = false;
   std::optional<Action> chosen_;       ///< in the menus
+  std::optional<std::string> wanted_;  ///< a file to open in place of one that cannot be drawn
   std::string openedVolume_;           ///< the volume that the last opened file names
   std::string opened_;                 ///< that file, until its image is complete
   std::string thumbnailOf_;            ///< the opened file that has no thumbnail yet

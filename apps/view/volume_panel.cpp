@@ -128,13 +128,19 @@ void SequencePanel::offer(ViewState& state) {
 void SequencePanel::drawControls(ViewState& state, int& frame) {
   const int last = int(state.sequence->files.size()) - 1;
   const std::string& file = state.sequence->files[std::size_t(std::clamp(frame, 0, last))];
-  if (ImGui::SliderInt(beginRow("Frame"), &frame, 0, last, std::filesystem::path(file).filename().c_str(),
-                       ImGuiSliderFlags_AlwaysClamp)) {
+  int number = frame + 1;
+  if (ImGui::SliderInt(beginRow("Frame"), &number, 1, last + 1, fmt::format("%d of {}", last + 1).c_str(), ImGuiSliderFlags_AlwaysClamp)) {
+    frame = number - 1;
     plays_ = false;
   }
+  hint(file.c_str());
   if (ImGui::Button(plays_ ? "Pause (space)###play" : "Play (space)###play", {-1.0f, 0.0f})) playOrPause();
   ImGui::SliderFloat(beginRow("Rate"), &framesPerSecond_, 1.0f, kMaxFramesPerSecond, "%.0f frames/s",
                      ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+  int end = int(end_);
+  if (choose("At the end", {"repeat", "turn round", "stop"}, end)) end_ = End(end);
+  tick("Whole images", waitsForWhole_);
+  hint("Plays each frame when its image is complete, in place of quick images");
   drawSentence(problem_, false);
 }
 
@@ -155,10 +161,22 @@ void SequencePanel::takeKeys(int frames, int& frame) {
 void SequencePanel::play(const ViewState& state, int& frame) {
   const Clock::time_point now = Clock::now();
   const std::chrono::duration<float> time(1.0f / framesPerSecond_);
-  if (!plays_ || state.changed || !state.answered || now - shown_ < time) return;
+  const bool isReady = waitsForWhole_ ? state.complete || state.failed : state.answered;
+  if (!plays_ || state.changed || !isReady || now - shown_ < time) return;
   if (!state.problem.empty()) problem_ = state.problem;
   shown_ = now;
-  frame = (frame + 1) % int(state.sequence->files.size());
+  const int last = int(state.sequence->files.size()) - 1;
+  if (end_ != End::Turn) step_ = 1;
+  if (frame + step_ >= 0 && frame + step_ <= last) {
+    frame += step_;
+  } else if (end_ == End::Turn) {
+    step_ = -step_;
+    frame = std::clamp(frame + step_, 0, last);
+  } else if (end_ == End::Repeat) {
+    frame = 0;
+  } else {
+    plays_ = false;
+  }
 }
 
 void SequencePanel::draw(ViewState& state) {

@@ -50,7 +50,11 @@ class SequencePanel {
   void takeKeys(int frames, int& frame);
   void play(const ViewState& state, int& frame);
 
-  bool plays_ = false;
+  enum class End { Repeat, Turn, Stop };
+
+  bool plays_ = false, waitsForWhole_ = false;
+  End end_ = End::Repeat;
+  int step_ = 1;  ///< -1 while it plays backwards
   float framesPerSecond_ = 24.0f;
   Clock::time_point shown_;
   std::string offeredFor_;  ///< the file for which a sequence was searched

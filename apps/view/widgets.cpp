@@ -13,7 +13,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr float kLabelWidth = 8.2f;  // in units of the font's size
+constexpr float kLabelWidth = 8.2f, kNumberWidth = 5.0f;  // in units of the font's size
 
 std::string rowName;
 ImVec2 labelLow, labelHigh;  // of the last row
@@ -24,15 +24,29 @@ double withFewDigits(double value) {
   return roundedTo(value, std::pow(10.0, std::floor(std::log10(std::abs(value))) - 3.0));
 }
 
-/// `name` is a widget's, after beginRow().
+/// `name` is a widget's, after beginRow(). The number is beside the slider, where its grab does not hide it, and can be typed.
 bool slideBy(const char* name, double& value, double low, double high, const char* format,
              ImGuiSliderFlags flags) {
-  double slid = value;
-  if (!ImGui::SliderScalar(name, ImGuiDataType_Double, &slid, &low, &high, format,
-                           flags | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat))
-    return false;
-  slid = withFewDigits(slid);
-  if (slid == value) return false;
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x, width = ImGui::CalcItemWidth();
+  const float number = std::min(kNumberWidth * ImGui::GetFontSize(), 0.5f * width);
+  double slid = value, typed = value;
+  static double lastTyped = 0.0;  // of the one field in which something is typed
+  ImGui::BeginGroup();
+  ImGui::PushID(name);
+  ImGui::SetNextItemWidth(std::max(width - number - gap, 1.0f));
+  const bool isSlid =
+      ImGui::SliderScalar("##slider", ImGuiDataType_Double, &slid, &low, &high, "",
+                          flags | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoRoundToFormat | ImGuiSliderFlags_NoInput);
+  ImGui::SameLine(0.0f, gap);
+  ImGui::SetNextItemWidth(number);
+  if (ImGui::InputScalar("##number", ImGuiDataType_Double, &typed, nullptr, nullptr, format, ImGuiInputTextFlags_AutoSelectAll))
+    lastTyped = typed;
+  const bool isTyped = ImGui::IsItemDeactivatedAfterEdit();
+  ImGui::PopID();
+  ImGui::EndGroup();
+  if (isTyped && std::isfinite(lastTyped)) slid = std::clamp(lastTyped, low, high);
+  if (isSlid) slid = withFewDigits(slid);
+  if ((!isSlid && !isTyped) || slid == value) return false;
   value = slid;
   return true;
 }
@@ -146,6 +160,16 @@ bool choose(const char* label, const std::vector<std::string>& words, int& value
     }
   ImGui::EndCombo();
   return changed;
+}
+
+bool panelHeader(const char* name, bool hasImage, bool isOpenAtFirst) {
+  if (hasImage) return ImGui::CollapsingHeader(name, isOpenAtFirst ? ImGuiTreeNodeFlags_DefaultOpen : ImGuiTreeNodeFlags_None);
+  ImGui::BeginDisabled();
+  ImGui::PushID("without an image");
+  ImGui::CollapsingHeader(name, ImGuiTreeNodeFlags_Leaf);
+  ImGui::PopID();
+  ImGui::EndDisabled();
+  return false;
 }
 
 bool checkBox(const char* label, bool* value) {

@@ -18,6 +18,8 @@ namespace freevoxels {
 /// Begins a line with a label at its left; the next widget fills the rest. Returns that widget's name for Dear ImGui, which is
 /// valid until the next call.
 const char* beginRow(const char* label);
+/// The header of a panel, which is closed and disabled until there is an image. Returns whether it is open.
+bool panelHeader(const char* name, bool hasImage, bool isOpenAtFirst);
 /// A heading within a panel.
 void heading(const char* text);
 /// A tooltip for the last widget and its label; `option` is the command line's name of it.

@@ -8,8 +8,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr float kMinPanelWidth = 240.0f;
-
 std::string timeText(const DrawnImage& drawn, bool whole, double perSecond) {
   const std::string often = whole || perSecond == 0.0 ? "" : fmt::format(", {:.0f} images/s", perSecond);
   const glm::ivec2 size = drawn.shown->size();
@@ -29,24 +27,22 @@ void beginPart(const char* name, ImVec2 low, ImVec2 size, ImVec2 padding, ImGuiW
   ImGui::PopStyleVar(4);
 }
 
-std::optional<float> drawSplitter(float panelWidth, float scale, float top, float height) {
+std::optional<float> drawSplitter(const char* name, float border, float scale, float top, float height) {
   const float width = kSplitterWidth * scale;
-  beginPart("splitter", {panelWidth - width, top}, {width, height}, {0.0f, 0.0f}, 0);
-  ImGui::InvisibleButton("splitter", {width, std::max(height, 1.0f)});
+  beginPart(name, {border - width, top}, {width, height}, {0.0f, 0.0f}, 0);
+  ImGui::InvisibleButton(name, {width, std::max(height, 1.0f)});
   if (ImGui::IsItemHovered() || ImGui::IsItemActive()) {
     ImGui::SetMouseCursor(ImGuiMouseCursor_ResizeEW);
     ImGui::GetWindowDrawList()->AddRectFilled(ImGui::GetItemRectMin(), ImGui::GetItemRectMax(),
                                               ImGui::GetColorU32(ImGuiCol_SliderGrab));
   }
   std::optional<float> dragged;
-  if (ImGui::IsItemActive())
-    dragged = std::clamp(ImGui::GetIO().MousePos.x + 0.5f * width, kMinPanelWidth * scale,
-                         std::max(kMaxPanelShare * ImGui::GetIO().DisplaySize.x, kMinPanelWidth * scale));
+  if (ImGui::IsItemActive()) dragged = ImGui::GetIO().MousePos.x + 0.5f * width;
   ImGui::End();
   return dragged;
 }
 
-void drawStatusBar(const ViewState& state, const Activity& activity, bool writes, float top, float height) {
+void drawStatusBar(const ViewState& state, const Activity& activity, bool cancels, float top, float height) {
   const float width = ImGui::GetIO().DisplaySize.x, text = ImGui::GetFontSize();
   ImGui::PushStyleColor(ImGuiCol_WindowBg, ImGui::GetStyleColorVec4(ImGuiCol_MenuBarBg));
   beginPart("status", {0.0f, top}, {width, height}, {0.6f * text, 0.5f * (height - text)}, ImGuiWindowFlags_NoScrollbar);
@@ -55,7 +51,7 @@ void drawStatusBar(const ViewState& state, const Activity& activity, bool writes
     ImGui::TextColored({1.0f, 0.55f, 0.45f, 1.0f}, "%s", state.problem.c_str());
     if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", state.problem.c_str());
   } else if (activity) {
-    ImGui::Text("%s  %.0f %%%s", activity->first.c_str(), 100.0 * activity->second, writes ? "   (Escape cancels)" : "");
+    ImGui::Text("%s  %.0f %%%s", activity->first.c_str(), 100.0 * activity->second, cancels ? "   (Escape cancels)" : "");
   } else {
     ImGui::TextUnformatted(state.notice.c_str());
   }

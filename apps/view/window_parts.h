@@ -23,13 +23,13 @@ void beginPart(const char* name, ImVec2 low, ImVec2 size, ImVec2 padding, ImGuiW
 
 /// The border at the right end of the panel, kSplitterWidth wide. Returns the panel's new width while it is dragged. `scale` is
 /// Window::contentScale().
-std::optional<float> drawSplitter(float panelWidth, float scale, float top, float height);
+std::optional<float> drawSplitter(const char* name, float border, float scale, float top, float height);
 
 /// What is being done, and the fraction of it that is done.
 using Activity = std::optional<std::pair<std::string, double>>;
 
-/// The last problem, `activity`, or the last notice, and the size and time of the image. `writes`: the activity can be cancelled.
-void drawStatusBar(const ViewState& state, const Activity& activity, bool writes, float top, float height);
+/// The last problem, `activity`, or the last notice, and the size and time of the image. `cancels`: the activity can be cancelled.
+void drawStatusBar(const ViewState& state, const Activity& activity, bool cancels, float top, float height);
 
 /// A line in the current part on how to turn, for those who have not turned yet.
 void drawTurnHint();

@@ -33,7 +33,7 @@ std::optional<glm::ivec2> findSpot(const Image& screen, glm::ivec3 color) {
 
 }  // namespace
 
-TEST_F(Viewer, EditsAreUndoneAndTheLastSceneComesBack) {
+TEST_F(Viewer, CamerasGoBackAndForwardAndTheLastSceneComesBack) {
   nlohmann::json last;
   {
     const auto session = use("procedural:cloud --resolution 16");
@@ -44,12 +44,12 @@ TEST_F(Viewer, EditsAreUndoneAndTheLastSceneComesBack) {
     ASSERT_NE(armOf(right), armOf(first));
     session->hands("mousemove 500 100 key 3");
     sceneOf(*session, "above.json");
-    session->hands("key ctrl+z");
-    EXPECT_EQ(sceneOf(*session, "undone.json"), right);
-    session->hands("key ctrl+z");
-    EXPECT_EQ(vectorOf(sceneOf(*session, "undone2.json"), "camera-position"), vectorOf(first, "camera-position"));
-    session->hands("key ctrl+y");
-    last = sceneOf(*session, "redone.json");
+    session->hands("key ctrl+shift+z");
+    EXPECT_EQ(sceneOf(*session, "before.json"), right);
+    session->hands("key ctrl+shift+z");
+    EXPECT_EQ(vectorOf(sceneOf(*session, "before2.json"), "camera-position"), vectorOf(first, "camera-position"));
+    session->hands("key ctrl+shift+y");
+    last = sceneOf(*session, "after.json");
     EXPECT_EQ(last, right);
     session->hands("key Tab");  // hides the panel
     session->save('s', "wide.png");
@@ -80,8 +80,15 @@ TEST_F(Viewer, ThePanelsValuesAreDraggedAndAFinishedImageIsShownBrighterWithoutD
   const int drawn = wholeImages();
   session->hands("mousemove 228 437 mousedown 1 mousemove 240 437 mousemove 262 437 mouseup 1 mousemove 700 300");
   EXPECT_NE(session->save('s', "brighter.png"), before);
-  EXPECT_GT(sceneOf(*session, "brighter.json").at("output").at("exposure"), 0.5);
+  const nlohmann::json brighter = sceneOf(*session, "brighter.json");
+  EXPECT_GT(brighter.at("output").at("exposure"), 0.5);
   EXPECT_EQ(wholeImages(), drawn);
+  session->hands("mousemove 700 300 key 1 key ctrl+z");
+  const nlohmann::json undone = sceneOf(*session, "undone.json");
+  EXPECT_FALSE(undone.contains("output") && undone.at("output").contains("exposure"));
+  EXPECT_EQ(vectorOf(undone, "up"), glm::dvec3(0.0, 1.0, 0.0));
+  EXPECT_NE(vectorOf(undone, "camera-position"), vectorOf(brighter, "camera-position")) << "cameras are no edits";
+  session->hands("key ctrl+y key ctrl+shift+z");
 
   session->hands("mousemove 143 151 click 1 mousemove 700 300");  // the box that clips
   EXPECT_EQ(sceneOf(*session, "clipped.json").at("input").at("clip-box").size(), 6u);

@@ -48,5 +48,20 @@ TEST(SliceTexels, ValuesBeyondTheRangeAreBlackAndWhite) {
   EXPECT_EQ(greyAt(texels, 3, 2, 0), 255);
 }
 
+TEST(SliceView, SidesOfAPatientAreThoseOfTheWorldOfScans) {
+  Volume scan;
+  scan.lengthUnit = "mm";
+  scan.up = {0.0, 0.0, 1.0};
+  scan.indexToWorld = glm::dmat4(glm::dmat3({0.1, 2.0, 0.0}, {-3.0, 0.2, 0.0}, {0.0, 0.3, -1.0}));
+  EXPECT_EQ(patientSide(scan, 0, false), 'P');
+  EXPECT_EQ(patientSide(scan, 0, true), 'A');
+  EXPECT_EQ(patientSide(scan, 1, false), 'R');
+  EXPECT_EQ(patientSide(scan, 1, true), 'L');
+  EXPECT_EQ(patientSide(scan, 2, false), 'I');
+  EXPECT_EQ(patientSide(scan, 2, true), 'S');
+  scan.lengthUnit.clear();
+  EXPECT_EQ(patientSide(scan, 2, true), 0) << "nobody lies in this world";
+}
+
 }  // namespace
 }  // namespace freevoxels

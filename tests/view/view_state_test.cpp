@@ -97,6 +97,47 @@ TEST_F(EditHistoryTest, AnotherVolumeIsAStepAndTheWindowKeepsItsSize) {
   EXPECT_EQ(state.scene.camera.size, glm::ivec2(640, 480));
 }
 
+TEST_F(EditHistoryTest, TheCameraStaysWhileEditsAreUndone) {
+  expose(1.0);
+  rest();
+  Camera turned;
+  turned.position = {3.0, 2.0, 1.0};
+  state.setCamera(turned);
+  rest();
+  history.undo(state);
+  EXPECT_EQ(exposure(), std::nullopt);
+  EXPECT_EQ(state.camera->position, turned.position);
+  EXPECT_EQ(state.scene.camera.position, turned.position);
+}
+
+TEST(CameraHistory, GoesBackAndForwardThroughTheCamerasOfAVolume) {
+  ViewState state;
+  state.scene.input.volume = "procedural:cloud";
+  CameraHistory cameras;
+  const auto look = [&](double x) {
+    Camera camera;
+    camera.position = {x, 0.0, 1.0};
+    state.setCamera(camera);
+    cameras.follow(state, true, true);
+    cameras.follow(state, false, false);
+  };
+  state.camera = Camera{};
+  cameras.follow(state, false, false);
+  look(1.0);
+  look(2.0);
+  cameras.goBack(state);
+  EXPECT_EQ(state.camera->position.x, 1.0);
+  EXPECT_TRUE(state.moved);
+  cameras.goBack(state);
+  EXPECT_EQ(state.camera->position.x, 0.0);
+  EXPECT_FALSE(cameras.canGoBack());
+  cameras.goForward(state);
+  EXPECT_EQ(state.camera->position.x, 1.0);
+  state.scene.input.volume = "procedural:head";
+  cameras.follow(state, false, false);
+  EXPECT_FALSE(cameras.canGoBack()) << "of another volume";
+}
+
 TEST_F(EditHistoryTest, WhatIsChosenForTheFirstImageIsNoEdit) {
   EditHistory fresh;
   ViewState opened;
