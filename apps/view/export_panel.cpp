@@ -99,7 +99,7 @@ void ExportPanel::draw(ViewState& state) {
   ImGui::SameLine();
   if (ImGui::Button("Copy command", {half, 0.0f})) copyCommand(state);
   hint("Copies the command line that renders this image (Ctrl+Shift+C)");
-  if (tick("Colour bar and scale bar", state.scene.method.annotate)) state.changed = true;
+  if (tick("Colour and scale bar", state.scene.method.annotate)) state.changed = true;
   hint("Over the images that are saved and copied: the colours of the transfer function with their values, and a length where it is exact",
        "--annotate");
   OutputDescription& output = state.scene.output;
@@ -110,7 +110,7 @@ void ExportPanel::draw(ViewState& state) {
     if (ImGui::Button("Save turntable...", {half, 0.0f})) askTurntable();
     hint("Writes an image for each frame of a full turn (Ctrl+T)");
     ImGui::SameLine();
-    if (ImGui::Button("Copy turntable cmd", {half, 0.0f}) && state.whole) {
+    if (ImGui::Button("Copy command##turn", {half, 0.0f}) && state.whole) {
       ImGui::SetClipboardText(turnCommandOf(*state.whole, turnName_, turnFrames_).c_str());
       state.notice = "copied the turntable command";
     }

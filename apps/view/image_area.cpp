@@ -102,7 +102,11 @@ void ImageArea::press(ViewState& state, const ShownTextures& textures, const Ima
   const ClipHandles handles(state, frame);
   const ClipHandles::Handle* const clip = ImGui::IsMouseDown(ImGuiMouseButton_Left) ? handles.hovered() : nullptr;
   held_ = Held::Camera;
-  if (clip != nullptr) {
+  const bool mayTakeLight = ImGui::IsMouseDown(ImGuiMouseButton_Left) && state.latest && !state.scene.lighting.unlit;
+  if (const auto light = mayTakeLight ? lightUnderMouse(state, frame) : std::nullopt) {
+    held_ = Held::Light;
+    light_ = {*light, state.scene.lighting.lights[*light].light.place, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}};
+  } else if (clip != nullptr) {
     held_ = Held::Clip;
     const InputDescription& input = state.scene.input;
     clip_ = {clip->side, clip->step, {ImGui::GetIO().MousePos.x, ImGui::GetIO().MousePos.y}, input.clipBox, input.clipPlane};
@@ -130,6 +134,20 @@ void ImageArea::dragClip(ViewState& state) const {
     const VoxelBox box = withSideMoved(*clip_.box, clip_.side, int(std::lround(voxels)), state.latest->whole->dimensions);
     if (box.first != now.clipBox->first || box.last != now.clipBox->last) state.clip(box, now.clipPlane);
   }
+}
+
+/// The light follows the mouse at its distance from the eye.
+void ImageArea::dragLight(ViewState& state, const ImageFrame& frame) const {
+  std::vector<LightingDescription::GivenLight>& lights = state.scene.lighting.lights;
+  if (light_.number >= lights.size() || !state.latest) return;
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const glm::dvec2 way(mouse.x - light_.mouse.x, light_.mouse.y - mouse.y);
+  const double step = std::pow(10.0, std::floor(std::log10(state.latest->scene.volume->voxelSize())) - 1.0);
+  glm::dvec3 place = light_.place + wayBeside(state.latest->scene.camera, light_.place, way, double(frame.size().y));
+  for (int c = 0; c < 3; ++c) place[c] = roundedTo(place[c], step);
+  if (place == lights[light_.number].light.place || way == glm::dvec2(0.0)) return;
+  lights[light_.number].light.place = place;
+  state.changed = true;
 }
 
 void ImageArea::drag(ViewState& state, const ImageFrame& frame) {
@@ -189,6 +207,8 @@ void ImageArea::draw(ViewState& state, const ShownTextures& textures) {
     drag(state, frame);
   else if (ImGui::IsItemActive() && held_ == Held::Clip)
     dragClip(state);
+  else if (ImGui::IsItemActive() && held_ == Held::Light)
+    dragLight(state, frame);
   else if (ImGui::IsItemActive() && held_ == Held::Split)
     state.split = std::clamp((io.MousePos.x - low.x) / room.x, 0.0f, 1.0f);
   moves_ = ImGui::IsItemActive() && held_ == Held::Camera;

@@ -31,10 +31,11 @@ class ImageArea {
   bool hasTurned() const { return turned_; }
 
  private:
-  enum class Held { Nothing, Camera, Split, Axes, Clip };
+  enum class Held { Nothing, Camera, Split, Axes, Clip, Light };
   void press(ViewState& state, const ShownTextures& textures, const ImageFrame& frame);
   void drag(ViewState& state, const ImageFrame& frame);
   void dragClip(ViewState& state) const;
+  void dragLight(ViewState& state, const ImageFrame& frame) const;
   void fly(ViewState& state);
 
   glm::ivec2 pixels_{0};
@@ -45,6 +46,11 @@ class ImageArea {
     std::optional<VoxelBox> box;
     std::optional<ClipPlane> plane;
   } clip_;  ///< the handle that is held, as it was when it was taken
+  struct {
+    std::size_t number = 0;
+    glm::dvec3 place{0.0};
+    glm::dvec2 mouse{0.0};
+  } light_;                      ///< the light that is held, as it was when it was taken
   std::array<bool, 6> flies_{};  ///< for each of the keys right, left, up, down, on and back
   bool moves_ = false, turned_ = false;
 };

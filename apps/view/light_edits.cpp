@@ -57,12 +57,11 @@ LightingDescription::GivenLight newLight(const Camera& camera, const Volume& vol
     given.light.place = rounded(fromUpperLeft, kSteps);
     return given;
   }
-  constexpr double kBeyondCorners = 1.25;
+  constexpr double kFromMiddle = 0.7;  // so that its handle is in the image
   const glm::dvec3 middle = 0.5 * (glm::dvec3(volume.dimensions) - 1.0);
   const double steps = std::pow(10.0, 3.0 - std::floor(std::log10(halfDiagonal(volume))));
-  given.light.place = rounded(glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0)) +
-                                  kBeyondCorners * halfDiagonal(volume) * fromUpperLeft,
-                              steps);
+  given.light.place =
+      rounded(glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0)) + kFromMiddle * halfDiagonal(volume) * fromUpperLeft, steps);
   return given;
 }
 

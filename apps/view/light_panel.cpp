@@ -126,11 +126,8 @@ bool drawScattering(LightingDescription& options) {
   constexpr int kMaxShown = 10;  // the next position of the slider is all orders
   const int given = options.scattering.value_or(kAllOrders);
   int orders = given == kAllOrders ? kMaxShown + 1 : given;
-  if (ImGui::SliderInt(beginRow("Scattering"), &orders, 1, std::max(kMaxShown + 1, orders),
-                       given == kAllOrders ? "all orders"
-                       : given == 1        ? "single"
-                                           : "%d orders",
-                       ImGuiSliderFlags_AlwaysClamp)) {
+  const std::string shown = given == kAllOrders ? "all orders" : given == 1 ? "single" : fmt::format("{} orders", given);
+  if (slideWhole("Scattering", orders, 1, std::max(kMaxShown + 1, orders), shown)) {
     options.scattering = orders;
     if (orders > kMaxShown) options.scattering.reset();
     changed = true;
@@ -194,7 +191,13 @@ bool drawLights(LightingDescription& options, const Camera& camera, const Volume
   const bool positional = ImGui::Button("Add point light");
   hint("A lamp somewhere in the world", "--light position=...");
   if (!directional && !positional) return changed;
-  options.lights.push_back(newLight(camera, volume, directional));
+  LightingDescription::GivenLight given = newLight(camera, volume, directional);
+  constexpr double kFill = 0.25;
+  if (!options.lights.empty()) {  // beside others, which by themselves light the volume well
+    given.hasIntensity = true;
+    given.light.intensity = roundedTo(kFill * defaultIntensity(given.light, volume), 1e-3);
+  }
+  options.lights.push_back(given);
   return true;
 }
 

@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <numbers>
 
 #include "apps/common/annotation.h"
 #include "apps/view/transfer_model.h"
@@ -17,6 +18,7 @@ namespace {
 constexpr std::array kAxisColors{IM_COL32(224, 96, 88, 255), IM_COL32(124, 196, 96, 255), IM_COL32(92, 148, 240, 255)};
 constexpr ImU32 kInk = IM_COL32(235, 235, 240, 255), kShade = IM_COL32(0, 0, 0, 150), kBox = IM_COL32(200, 205, 215, 110);
 constexpr ImU32 kPlaneColor = IM_COL32(240, 200, 80, 255);
+constexpr float kHandle = 9.0f;     // reach of the mouse, in units
 constexpr float kMinSlope = 0.15f;  // sine of the angle between a plane's normal and the view from which its handle follows the normal
 
 float unit() {
@@ -158,6 +160,25 @@ double pixelLength(const Camera& camera, double height) {
   return length / height;
 }
 
+glm::dvec3 wayBeside(const Camera& camera, glm::dvec3 position, glm::dvec2 pixels, double height) {
+  const glm::dmat4 toCamera = worldToCamera(camera);
+  const glm::dmat3 toWorld = glm::transpose(glm::dmat3(toCamera));
+  double length = pixelLength(camera, height);
+  if (!camera.orthographic) length *= -(toCamera * glm::dvec4(position, 1.0)).z / glm::distance(camera.position, camera.lookAt);
+  return length * (pixels.x * toWorld[0] + pixels.y * toWorld[1]);
+}
+
+std::optional<std::size_t> lightUnderMouse(const ViewState& state, const ImageFrame& frame) {
+  const ImVec2 mouse = ImGui::GetIO().MousePos;
+  const std::vector<LightingDescription::GivenLight>& lights = state.scene.lighting.lights;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    if (lights[i].light.atInfinity) continue;
+    const auto place = frame.place(state.latest->scene.camera, lights[i].light.place);
+    if (place && std::hypot(place->x - mouse.x, place->y - mouse.y) < kHandle * unit()) return i;
+  }
+  return {};
+}
+
 std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame) {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   ImVec2 centre;
@@ -244,7 +265,7 @@ void ClipHandles::addPlane(const ViewState& state, const ImageFrame& frame) {
 const ClipHandles::Handle* ClipHandles::hovered() const {
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   for (const Handle& handle : handles)
-    if (std::hypot(handle.place.x - mouse.x, handle.place.y - mouse.y) < 9.0f * unit()) return &handle;
+    if (std::hypot(handle.place.x - mouse.x, handle.place.y - mouse.y) < kHandle * unit()) return &handle;
   return nullptr;
 }
 
@@ -256,6 +277,26 @@ VoxelBox withSideMoved(const VoxelBox& box, int side, int voxels, glm::ivec3 dim
   else
     moved.last[axis] = std::clamp(moved.last[axis] + voxels, moved.first[axis], dimensions[axis] - 1);
   return moved;
+}
+
+/// The scene's point lights, as handles.
+void drawLights(const ViewState& state, const ImageFrame& frame) {
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  const std::optional<std::size_t> hovered = lightUnderMouse(state, frame);
+  const std::vector<LightingDescription::GivenLight>& lights = state.scene.lighting.lights;
+  for (std::size_t i = 0; i < lights.size(); ++i) {
+    const auto place = lights[i].light.atInfinity ? std::nullopt : frame.place(state.latest->scene.camera, lights[i].light.place);
+    if (!place) continue;
+    const glm::dvec3& color = lights[i].light.color;
+    list.AddCircleFilled(*place, 5.0f * unit(), shownColor(color / std::max({color.r, color.g, color.b, 1e-6}), 1.0f));
+    list.AddCircle(*place, 5.0f * unit(), i == hovered ? kInk : kShade, 0, 2.0f);
+    constexpr int kRays = 8;
+    for (int ray = 0; ray < kRays; ++ray) {
+      const float angle = 2.0f * std::numbers::pi_v<float> * float(ray) / kRays, x = std::cos(angle), y = std::sin(angle);
+      list.AddLine({place->x + 8.0f * unit() * x, place->y + 8.0f * unit() * y},
+                   {place->x + 12.0f * unit() * x, place->y + 12.0f * unit() * y}, kPlaneColor, 2.0f);
+    }
+  }
 }
 
 void drawOverlays(const ViewState& state, const ImageFrame& frame) {
@@ -270,6 +311,7 @@ void drawOverlays(const ViewState& state, const ImageFrame& frame) {
   if (state.overlays.colorBar && isVolume) drawColorBar(state, frame);
   if (state.overlays.scaleBar) drawScaleBar(camera, frame, state.latest ? state.latest->scene.volume->lengthUnit : "");
   if (state.overlays.axes) drawAxes(camera, frame);
+  if (isVolume && !state.scene.lighting.unlit) drawLights(state, frame);
   const ClipHandles::Handle* const hovered = clip.hovered();
   for (const ClipHandles::Handle& handle : clip.handles) {
     const ImU32 color = handle.side == ClipHandles::kPlane ? kPlaneColor : kAxisColors[std::size_t(handle.side / 2)];

@@ -24,6 +24,9 @@ struct ImageFrame {
 
 /// World length of a pixel at the look-at point, of an image `height` pixels high.
 double pixelLength(const Camera& camera, double height);
+/// The way in the plane that is parallel to the image and goes through a position before the eye, for a way on an image `height` pixels
+/// high, in pixels to the right and upwards.
+glm::dvec3 wayBeside(const Camera& camera, glm::dvec3 position, glm::dvec2 pixels, double height);
 
 /// The axis in the corner whose end is under the mouse: 0 to 5 for +x, -x, +y, -y, +z, -z.
 std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame);
@@ -47,6 +50,9 @@ struct ClipHandles {
   void addBox(const ViewState& state, const ImageFrame& frame);
   void addPlane(const ViewState& state, const ImageFrame& frame);
 };
+
+/// The number among the scene's lights of the point light under the mouse. `state` has a camera and an image.
+std::optional<std::size_t> lightUnderMouse(const ViewState& state, const ImageFrame& frame);
 
 /// Where a plane cuts the volume's box: the corners of a convex polygon in the world, in order. None where it misses the box.
 std::vector<glm::dvec3> planeInBox(const Volume& volume, const ClipPlane& plane);

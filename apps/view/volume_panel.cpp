@@ -21,7 +21,7 @@ namespace freevoxels {
 
 namespace {
 
-constexpr float kMaxFramesPerSecond = 120.0f;
+constexpr int kMaxFramesPerSecond = 120;
 
 int frameOf(const ViewState& state) {
   const auto& files = state.sequence->files;
@@ -95,8 +95,7 @@ void VolumePanel::draw(ViewState& state, GridList& grids) {
   drawFacts(state);
   if (proceduralName(state.scene.input.volume)) {
     int resolution = state.scene.input.resolution ? state.scene.input.resolution->x : kDefaultResolution;
-    ImGui::SliderInt(beginRow("Resolution"), &resolution, 16, 512, "%d voxels",
-                     ImGuiSliderFlags_Logarithmic | ImGuiSliderFlags_AlwaysClamp);
+    slideWhole("Resolution", resolution, 16, 512, fmt::format("{} voxels", resolution_.value_or(resolution)), true);
     hint("Voxels along the edge of the box", "--resolution");
     if (ImGui::IsItemActive()) resolution_ = resolution;
     if (ImGui::IsItemDeactivatedAfterEdit() && resolution_) {
@@ -129,14 +128,13 @@ void SequencePanel::drawControls(ViewState& state, int& frame) {
   const int last = int(state.sequence->files.size()) - 1;
   const std::string& file = state.sequence->files[std::size_t(std::clamp(frame, 0, last))];
   int number = frame + 1;
-  if (ImGui::SliderInt(beginRow("Frame"), &number, 1, last + 1, fmt::format("%d of {}", last + 1).c_str(), ImGuiSliderFlags_AlwaysClamp)) {
+  if (slideWhole("Frame", number, 1, last + 1, fmt::format("{} of {}", number, last + 1))) {
     frame = number - 1;
     plays_ = false;
   }
   hint(file.c_str());
   if (ImGui::Button(plays_ ? "Pause (space)###play" : "Play (space)###play", {-1.0f, 0.0f})) playOrPause();
-  ImGui::SliderFloat(beginRow("Rate"), &framesPerSecond_, 1.0f, kMaxFramesPerSecond, "%.0f frames/s",
-                     ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_Logarithmic);
+  slideWhole("Rate", framesPerSecond_, 1, kMaxFramesPerSecond, fmt::format("{} a second", framesPerSecond_), true);
   int end = int(end_);
   if (choose("At the end", {"repeat", "turn round", "stop"}, end)) end_ = End(end);
   tick("Whole images", waitsForWhole_);
@@ -160,7 +158,7 @@ void SequencePanel::takeKeys(int frames, int& frame) {
 
 void SequencePanel::play(const ViewState& state, int& frame) {
   const Clock::time_point now = Clock::now();
-  const std::chrono::duration<float> time(1.0f / framesPerSecond_);
+  const std::chrono::duration<float> time(1.0f / float(framesPerSecond_));
   const bool isReady = waitsForWhole_ ? state.complete || state.failed : state.answered;
   if (!plays_ || state.changed || !isReady || now - shown_ < time) return;
   if (!state.problem.empty()) problem_ = state.problem;

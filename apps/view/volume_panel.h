@@ -55,7 +55,7 @@ class SequencePanel {
   bool plays_ = false, waitsForWhole_ = false;
   End end_ = End::Repeat;
   int step_ = 1;  ///< -1 while it plays backwards
-  float framesPerSecond_ = 24.0f;
+  int framesPerSecond_ = 24;
   Clock::time_point shown_;
   std::string offeredFor_;  ///< the file for which a sequence was searched
   std::optional<Sequence> offered_;

@@ -130,6 +130,21 @@ bool slideLogarithmic(const char* label, double& value, double low, double high,
   return slideBy(beginRow(label), value, low, high, format, ImGuiSliderFlags_Logarithmic);
 }
 
+bool slideWhole(const char* label, int& value, int low, int high, const std::string& shown, bool isLogarithmic) {
+  const char* const name = beginRow(label);
+  const float gap = ImGui::GetStyle().ItemInnerSpacing.x, width = ImGui::CalcItemWidth();
+  const float text = std::min(kNumberWidth * ImGui::GetFontSize(), 0.5f * width);
+  const ImGuiSliderFlags flags = isLogarithmic ? ImGuiSliderFlags_Logarithmic : ImGuiSliderFlags_None;
+  ImGui::BeginGroup();
+  ImGui::SetNextItemWidth(std::max(width - text - gap, 1.0f));
+  const bool changed = ImGui::SliderInt(name, &value, low, high, "", flags | ImGuiSliderFlags_AlwaysClamp | ImGuiSliderFlags_NoInput);
+  ImGui::SameLine(0.0f, gap);
+  ImGui::AlignTextToFramePadding();
+  ImGui::TextUnformatted(shown.c_str());
+  ImGui::EndGroup();
+  return changed;
+}
+
 bool slideOptional(const char* label, std::optional<double>& value, double usual, double low, double high,
                    const char* format) {
   double slid = value.value_or(usual);

@@ -35,6 +35,8 @@ bool editSwatch(const char* name, glm::dvec3& linear);
 bool slide(const char* label, double& value, double low, double high, const char* format = "%.3g");
 /// `low` must be above 0.
 bool slideLogarithmic(const char* label, double& value, double low, double high, const char* format = "%.4g");
+/// A whole number, with what it means beside the slider.
+bool slideWhole(const char* label, int& value, int low, int high, const std::string& shown, bool isLogarithmic = false);
 /// An optional value, which is `usual` if it is not given; it can be reset.
 bool slideOptional(const char* label, std::optional<double>& value, double usual, double low, double high,
                    const char* format = "%.3g");

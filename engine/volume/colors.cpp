@@ -4,7 +4,6 @@
 
 #include <algorithm>
 #include <array>
-#include <ranges>
 #include <span>
 #include <utility>
 
@@ -20,9 +19,10 @@ constexpr std::size_t kOpacity = 3;
 /// Whether all voxels have the same value.
 bool isUniform(const ScalarBricks& values) {
   const float first = values.scalarAt(0, 0);
-  return std::ranges::all_of(std::views::iota(std::size_t(0), values.count()), [&](std::size_t brick) {
-    return std::ranges::all_of(values.brick(brick), [&](float value) { return value == first || value == kInactiveVoxel; });
-  });
+  const auto isOther = [&](float value) { return value != first && value != kInactiveVoxel; };
+  for (std::size_t i = 0; i < values.count(); ++i)
+    if (std::ranges::any_of(values.brick(i), isOther)) return false;
+  return true;
 }
 
 }  // namespace

@@ -8,7 +8,6 @@
 #include <cmath>
 #include <iterator>
 #include <limits>
-#include <ranges>
 #include <set>
 #include <span>
 #include <utility>
@@ -275,8 +274,9 @@ bool looksLikeFog(const Volume& volume) {
   if (double(std::ranges::count(sides, 0.0f)) < kMinEmpty * double(sides.size())) return false;
   const auto isFraction = [](float value) { return value != kInactiveVoxel && value != std::floor(value); };
   if (!volume.scalars.values().empty() && std::ranges::none_of(volume.scalars.values(), isFraction)) return false;
-  return std::ranges::any_of(std::views::iota(std::size_t(0), volume.scalars.count()),
-                             [&](std::size_t brick) { return std::ranges::any_of(volume.scalars.brick(brick), isFraction); });
+  for (std::size_t i = 0; i < volume.scalars.count(); ++i)
+    if (std::ranges::any_of(volume.scalars.brick(i), isFraction)) return true;
+  return false;
 }
 
 void orientScan(Volume& volume) {

@@ -104,7 +104,7 @@ std::optional<std::array<float, 2>> windowAboveBackground(const ScalarBricks& va
   const int mode = int(std::ranges::max_element(histogram.counts) - histogram.counts.begin());
   const int begin = 2 * mode - std::min(binBelow(kTail), mode) + 1, end = binBelow(1.0 - kTail) + 1;
   if (begin >= end || binBelow(1.0 - kMaxAbove) >= begin) return std::nullopt;
-  const auto valueAt = [&](int bin) { return std::lerp(minimum, maximum, float(bin) / float(kBins)); };
+  const auto valueAt = [low = minimum, high = maximum](int bin) { return std::lerp(low, high, float(bin) / float(kBins)); };
   return std::array{valueAt(begin), valueAt(end)};
 }
 
