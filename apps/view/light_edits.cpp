@@ -48,20 +48,27 @@ glm::dvec3 directionOnBall(glm::dvec2 place) {
   return {across, distance <= 1.0 ? depth : -depth};
 }
 
-LightingDescription::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity) {
-  const glm::dvec3 fromUpperLeft =
-      glm::transpose(glm::dmat3(worldToCamera(camera))) * glm::normalize(glm::dvec3(-0.5, 0.7, 0.5));
+LightingDescription::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity, std::size_t others) {
+  const double fill = atInfinity ? 0.15 : 0.05;  // a point light is near
+  const double side = others % 2 == 0 ? -0.5 : 0.5;
+  const glm::dvec3 fromAbove = glm::transpose(glm::dmat3(worldToCamera(camera))) * glm::normalize(glm::dvec3(side, 0.7, 0.5));
   LightingDescription::GivenLight given{.light = {.atInfinity = atInfinity}};
   if (atInfinity) {
     constexpr double kSteps = 1e3;
-    given.light.place = rounded(fromUpperLeft, kSteps);
-    return given;
+    given.light.place = rounded(fromAbove, kSteps);
+  } else {
+    constexpr double kBeyondBox = 1.1;  // not far, so that its handle is in the image
+    const glm::dvec3 half = 0.5 * glm::dvec3(volume.dimensions), middle = half - 0.5;
+    const glm::dvec3 inVoxels = glm::abs(glm::inverse(glm::dmat3(volume.indexToWorld)) * fromAbove),
+                     ways = half / glm::max(inVoxels, 1e-12);
+    const double steps = std::pow(10.0, 3.0 - std::floor(std::log10(halfDiagonal(volume))));
+    given.light.place = rounded(
+        glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0)) + kBeyondBox * std::min({ways.x, ways.y, ways.z}) * fromAbove, steps);
   }
-  constexpr double kFromMiddle = 0.7;  // so that its handle is in the image
-  const glm::dvec3 middle = 0.5 * (glm::dvec3(volume.dimensions) - 1.0);
-  const double steps = std::pow(10.0, 3.0 - std::floor(std::log10(halfDiagonal(volume))));
-  given.light.place =
-      rounded(glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0)) + kFromMiddle * halfDiagonal(volume) * fromUpperLeft, steps);
+  if (others > 0) {  // which by themselves light the volume well
+    given.hasIntensity = true;
+    given.light.intensity = rounded(glm::dvec3(fill * defaultIntensity(given.light, volume)), 1e3).x;
+  }
   return given;
 }
 

@@ -20,8 +20,9 @@ glm::dvec3 directionOf(glm::dvec2 angles);
 /// points to the back, the farther away the more. A unit vector.
 glm::dvec3 directionOnBall(glm::dvec2 place);
 
-/// A light from the upper left of the camera: at infinity, or outside of the volume's box.
-LightingDescription::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity);
+/// A light from the upper left of the camera, or from the upper right where there is an odd number of others: at infinity, or outside of
+/// the volume's box. Beside others it is dim.
+LightingDescription::GivenLight newLight(const Camera& camera, const Volume& volume, bool atInfinity, std::size_t others);
 
 /// Distance from the middle of the volume's box to its corners.
 double halfDiagonal(const Volume& volume);

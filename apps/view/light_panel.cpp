@@ -191,13 +191,7 @@ bool drawLights(LightingDescription& options, const Camera& camera, const Volume
   const bool positional = ImGui::Button("Add point light");
   hint("A lamp somewhere in the world", "--light position=...");
   if (!directional && !positional) return changed;
-  LightingDescription::GivenLight given = newLight(camera, volume, directional);
-  constexpr double kFill = 0.25;
-  if (!options.lights.empty()) {  // beside others, which by themselves light the volume well
-    given.hasIntensity = true;
-    given.light.intensity = roundedTo(kFill * defaultIntensity(given.light, volume), 1e-3);
-  }
-  options.lights.push_back(given);
+  options.lights.push_back(newLight(camera, volume, directional, options.lights.size()));
   return true;
 }
 

@@ -64,7 +64,7 @@ TEST(LightEdits, ANewLightComesFromTheUpperLeftOfTheCamera) {
   const Camera camera = framingCamera(cube, 140.0, 10.0, 1.0, {});
   const glm::dmat3 toCamera(worldToCamera(camera));
   for (const bool atInfinity : {true, false}) {
-    const LightingDescription::GivenLight given = newLight(camera, cube, atInfinity);
+    const LightingDescription::GivenLight given = newLight(camera, cube, atInfinity, 0);
     EXPECT_EQ(given.light.atInfinity, atInfinity);
     EXPECT_FALSE(given.hasIntensity);
     const glm::dvec3 seen = toCamera * given.light.place;  // the cube is around the origin
@@ -72,8 +72,12 @@ TEST(LightEdits, ANewLightComesFromTheUpperLeftOfTheCamera) {
     EXPECT_GT(seen.y, 0.0);
     EXPECT_GT(seen.z, 0.0);
     if (!atInfinity) {
-      EXPECT_GT(glm::length(given.light.place), halfDiagonal(cube));
+      const glm::dvec3 index(glm::inverse(cube.indexToWorld) * glm::dvec4(given.light.place, 1.0));
+      EXPECT_TRUE(glm::any(glm::lessThan(index, glm::dvec3(-0.5))) || glm::any(glm::greaterThan(index, glm::dvec3(cube.dimensions) - 0.5)));
     }
+    const LightingDescription::GivenLight second = newLight(camera, cube, atInfinity, 1);
+    EXPECT_GT((toCamera * second.light.place).x, 0.0);
+    EXPECT_LT(second.light.intensity, 0.5 * defaultIntensity(second.light, cube));
     EXPECT_GT(defaultIntensity(given.light, cube), 0.0);
   }
   EXPECT_EQ(defaultIntensity({}, cube), kDefaultIrradiance);

@@ -40,6 +40,23 @@ TEST(Overlays, WorldPositionsHaveThePlacesThatTheyHaveInTheImage) {
   EXPECT_FALSE(frame.place(camera, {0.0, 0.0, 11.0})) << "behind the eye";
 }
 
+TEST(Overlays, WhatIsDraggedStaysUnderTheMouse) {
+  const ImageFrame frame{{10.0f, 20.0f}, {410.0f, 320.0f}};
+  for (const bool orthographic : {false, true}) {
+    Camera camera;
+    camera.position = {3.0, 2.0, 4.0};
+    camera.lookAt = {0.2, 0.1, -0.3};
+    camera.orthographic = orthographic;
+    camera.orthographicHeight = 2.5;
+    const glm::dvec3 position(0.8, -0.4, 1.1);
+    const auto before = frame.place(camera, position);
+    const auto after = frame.place(camera, position + wayBeside(camera, position, {37.0, -11.0}, 300.0));
+    ASSERT_TRUE(before && after);
+    EXPECT_NEAR(after->x - before->x, 37.0f, 1e-3f);
+    EXPECT_NEAR(after->y - before->y, 11.0f, 1e-3f);
+  }
+}
+
 TEST(Overlays, APlaneCutsTheBoxInAPolygonWhoseCornersAreInOrder) {
   Volume volume{.dimensions = glm::ivec3(4)};
   volume.indexToWorld = glm::translate(glm::dmat4(1.0), glm::dvec3(-1.5));  // the box is -2 to 2
