@@ -33,7 +33,7 @@ set(control ${PROJECT_BINARY_DIR}/debian_package)
 file(WRITE ${control}/triggers "activate-noawait ldconfig\n")
 file(WRITE ${control}/shlibs "libfreevoxels ${PROJECT_VERSION_MAJOR} freevoxels (>= ${PROJECT_VERSION})\n")
 set(CPACK_DEBIAN_FREEVOXELS_PACKAGE_CONTROL_EXTRA ${control}/triggers ${control}/shlibs)
-set(CPACK_DEBIAN_FREEVOXELS_PACKAGE_DEPENDS "libvulkan1, mesa-vulkan-drivers, fonts-dejavu-core")  # opened at run time
+set(CPACK_DEBIAN_FREEVOXELS_PACKAGE_DEPENDS "libvulkan1, mesa-vulkan-drivers")  # opened at run time
 if(FREEVOXELS_PYTHON)  # the module is of this Python alone
   math(EXPR next_minor "${Python_VERSION_MINOR} + 1")
   string(APPEND CPACK_DEBIAN_FREEVOXELS_PACKAGE_DEPENDS ", python3 (>= ${Python_VERSION_MAJOR}.${Python_VERSION_MINOR}~)"

@@ -78,7 +78,7 @@ bool slideOffset(ClipPlane& plane, const Volume& volume) {
   const glm::dvec3 reach = glm::abs(normal * glm::dmat3(volume.indexToWorld)) * glm::dvec3(volume.dimensions);
   const double most = 0.5 * (reach.x + reach.y + reach.z), now = glm::dot(normal, plane.point - centre);
   double offset = now;
-  const bool changed = slide("Offset", offset, -most, most, "%.3g units");
+  const bool changed = slide("Offset", offset, -most, most, "%.3g");
   hint("How far the plane is from the middle of the volume along its normal; its handle can be dragged in the image", "--clip-plane");
   if (changed) plane.point += (offset - now) * normal;
   return changed;

@@ -9,6 +9,7 @@
 #include <cstdio>
 #include <cstdlib>
 #include <filesystem>
+#include <functional>
 #include <span>
 #include <sstream>
 #include <vector>
@@ -20,6 +21,7 @@
 #include "apps/common/scene_options.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_json.h"
+#include "engine/octree/volume_limits.h"
 
 namespace freevoxels {
 
@@ -181,6 +183,25 @@ void saveScene(const DrawnImage& drawn, const std::string& file) {
   writeScene(file, drawn.request.scene.resolved(drawn.scene));
 }
 
+namespace {
+
+/// Draws `count` images, of which `set` sets the request, and writes each while the next one is drawn.
+void saveFrames(const Device& device, ImageMaker& maker, ImageRequest request, std::span<const std::string> files,
+                const std::function<void(ImageRequest&, std::size_t)>& set, const Progress& progress) {
+  const auto count = double(files.size());
+  BackgroundWriter writer;
+  for (std::size_t frame = 0; frame < files.size(); ++frame) {
+    const Progress ofFrame = [&](std::string_view stage, double fraction) {
+      progress(fmt::format("frame {} of {}: {}", frame + 1, files.size(), stage), (double(frame) + fraction) / count);
+    };
+    set(request, frame);
+    writer.start([&device, drawn = maker.make(request, ofFrame), &file = files[frame]] { saveImage(device, drawn, file); });
+  }
+  writer.finish();
+}
+
+}  // namespace
+
 void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& pattern, int frames,
               const Progress& progress) {
   const std::vector<std::string> files = filesOfTurn(pattern, frames);
@@ -188,21 +209,27 @@ void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& 
   request.scene = sceneInto(drawn, files);
   checkScene(request.scene, files);
   const std::vector<Camera> cameras = request.scene.cameras(drawn.scene, frames);
-
   VolumeCache volumes(request.scene, drawn.scene.volume);
   ImageMaker maker(device, volumes);
-  BackgroundWriter writer;
-  for (int frame = 0; frame < frames; ++frame) {
-    const double start = double(frame) / frames;
-    const Progress ofFrame = [&](std::string_view stage, double fraction) {
-      progress(fmt::format("frame {} of {}: {}", frame + 1, frames, stage), start + fraction / frames);
-    };
-    request.scene.camera.look(cameras[std::size_t(frame)]);
-    writer.start([&device, drawn = maker.make(request, ofFrame), &file = files[std::size_t(frame)]] {
-      saveImage(device, drawn, file);
-    });
-  }
-  writer.finish();
+  const auto look = [&](ImageRequest& of, std::size_t frame) { of.scene.camera.look(cameras[frame]); };
+  saveFrames(device, maker, request, files, look, progress);
+}
+
+void saveSequence(const Device& device, const DrawnImage& drawn, const Sequence& sequence, const std::string& pattern,
+                  const Progress& progress) {
+  std::vector<std::string> files;
+  for (const FrameNumber& number : sequence.numbers) files.push_back(frameName(pattern, number));
+  ImageRequest request = drawn.request;
+  request.scene = sceneInto(drawn, files);
+  request.scene.camera.look(drawn.scene.camera);
+  request.isFrame = true;
+  request.film.clear();
+  request.revision = 0;
+  checkScene(request.scene, files);
+  VolumeCache volumes(kMaxNumberedVoxels);
+  ImageMaker maker(device, volumes);
+  const auto open = [&](ImageRequest& of, std::size_t frame) { of.scene.input.volume = sequence.files[frame]; };
+  saveFrames(device, maker, request, files, open, progress);
 }
 
 }  // namespace freevoxels

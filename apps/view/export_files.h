@@ -4,6 +4,7 @@
 #include <string>
 #include <string_view>
 
+#include "apps/common/sequence.h"
 #include "apps/view/image_maker.h"
 
 namespace freevoxels {
@@ -31,5 +32,10 @@ void saveScene(const DrawnImage& drawn, const std::string& file);
 /// Writes the frames of turnCommandOf's command.
 void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& pattern, int frames,
               const Progress& progress);
+
+/// Writes an image of each frame of the sequence, with the camera, lights and scales of the image. Frames without anything to draw are the
+/// background.
+void saveSequence(const Device& device, const DrawnImage& drawn, const Sequence& sequence, const std::string& pattern,
+                  const Progress& progress);
 
 }  // namespace freevoxels

@@ -74,6 +74,17 @@ void ExportPanel::askTurntable() {
                });
 }
 
+void ExportPanel::askSequence(const Sequence& sequence) {
+  dialog_.save("Save sequence: # stands for the digits of a frame's number", sequenceName_, {".png", ".exr", ".jpg"},
+               [this, sequence](const std::string& pattern) {
+                 sequenceName_ = pattern;
+                 want({[this, pattern, sequence](const DrawnImage& of, const Progress& progress) {
+                         saveSequence(device_, of, sequence, pattern, progress);
+                       },
+                       fmt::format("saved {} frames: {}", sequence.files.size(), pattern)});
+               });
+}
+
 void ExportPanel::copyImage() {
   if (!canCopyImages()) return want({[](const DrawnImage&, const Progress&) {}, ""});
   want({[this](const DrawnImage& drawn, const Progress&) { freevoxels::copyImage(device_, drawn); }, "copied the image"});
@@ -102,6 +113,10 @@ void ExportPanel::draw(ViewState& state) {
   if (tick("Colour and scale bar", state.scene.method.annotate)) state.changed = true;
   hint("Over the images that are saved and copied: the colours of the transfer function with their values, and a length where it is exact",
        "--annotate");
+  if (state.sequence) {
+    if (ImGui::Button("Save sequence...", {-1.0f, 0.0f})) askSequence(*state.sequence);
+    hint("Writes an image of each frame, with this camera");
+  }
   OutputDescription& output = state.scene.output;
   if (ImGui::TreeNode("Turntable")) {
     ImGui::InputInt(beginRow("Frames"), &turnFrames_, 1, 10);

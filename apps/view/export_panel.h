@@ -27,6 +27,7 @@ class ExportPanel {
   void askImage();
   void askScene();
   void askTurntable();
+  void askSequence(const Sequence& sequence);
   /// Copies the complete image to the clipboard, where a program for that is installed (wl-copy or xclip); otherwise its command
   /// line, and says so.
   void copyImage();
@@ -52,6 +53,7 @@ class ExportPanel {
   const Device& device_;
   FileDialog& dialog_;
   std::string imageName_ = "image.png", sceneName_ = "scene.json", turnName_ = "turn_####.png";
+  std::string sequenceName_ = "frame_####.png";
   std::optional<glm::ivec2> imageSize_;  ///< of saved images; none: that of the window
   int turnFrames_;
   std::deque<Task> waiting_;  ///< for the image to be complete

@@ -51,7 +51,7 @@ std::string timeText(fs::file_time_type time) {
 
 /// What can be opened.
 std::vector<std::string> openedEndings() {
-  std::vector<std::string> endings{".vdb", ".fvx", ".json", ".exr", ".hdr", ".vp", ".xml", ".itf", ".tfi", ".1dt"};
+  std::vector<std::string> endings{".vdb", ".fvx", ".json", ".exr", ".hdr", ".vp", ".xml", ".itf", ".tfi", ".1dt", ".mrml"};
   endings.insert(endings.end(), scanEndings().begin(), scanEndings().end());
   return endings;
 }

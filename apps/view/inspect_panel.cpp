@@ -216,8 +216,13 @@ std::string megabytes(std::uint64_t bytes) {
 void drawFigures(const DrawnImage& drawn) {
   if (!ImGui::TreeNode("Times, memory, counts")) return;
   const auto line = [](const std::string& name, const std::string& value) {
+    const float gap = ImGui::GetStyle().ItemSpacing.x, width = ImGui::CalcTextSize(value.c_str()).x;
+    const ImVec2 low = ImGui::GetCursorScreenPos();
+    const float right = low.x + ImGui::GetContentRegionAvail().x;
+    ImGui::PushClipRect(low, {right - width - gap, low.y + ImGui::GetTextLineHeightWithSpacing()}, true);  // a long name ends there
     ImGui::TextUnformatted(name.c_str());
-    ImGui::SameLine(0.6f * ImGui::GetContentRegionAvail().x);
+    ImGui::PopClipRect();
+    ImGui::SetCursorScreenPos({right - width, low.y});
     ImGui::TextUnformatted(value.c_str());
   };
   for (const StageTime& time : drawn.times)
@@ -230,6 +235,7 @@ void drawFigures(const DrawnImage& drawn) {
   line("lists, splats", megabytes(memory.lists + memory.splats));
   ImGui::Separator();
   if (drawn.visibleVoxels) line("voxels", fmt::format("{}", *drawn.visibleVoxels));
+  if (drawn.request.scene.method.drawing() != Draw::Splats) return ImGui::TreePop();
   line("considered", fmt::format("{}", drawn.cut.considered));
   line("empty", fmt::format("{}", drawn.cut.empty));
   line("outside", fmt::format("{}", drawn.cut.outside));

@@ -116,10 +116,11 @@ bool editRadiance(glm::dvec3& radiance) {
   return changed;
 }
 
-bool drawScattering(LightingDescription& options) {
+/// `hasSurfaces`: whether the image has some.
+bool drawScattering(LightingDescription& options, bool hasSurfaces) {
   bool changed = choose("Shading", kShadingWords, options.shading, Shading::Auto);
   hint("As fog, or as surfaces across the gradient; auto: surfaces with a transfer function", "--shading");
-  if (options.shading != Shading::Scatter) {
+  if (hasSurfaces || options.shading == Shading::Gradient) {
     changed |= slideOptional("Surface share", options.surface, 1.0, 0.0, 1.0);
     hint("Share of the light that surfaces reflect; the rest is scattered as in fog", "--surface-share");
   }
@@ -206,7 +207,9 @@ void LightPanel::draw(ViewState& state) {
   changed |= drawAround(options);
   if (lit) {
     ImGui::Separator();
-    if (!options.lights.empty()) changed |= drawScattering(options);
+    const std::optional<Lighting>& drawn = state.latest->scene.lighting;
+    const bool hasSurfaces = drawn && (drawn->surface > 0.0 || options.surface) && options.shading != Shading::Scatter;
+    if (!options.lights.empty()) changed |= drawScattering(options, hasSurfaces);
     changed |= drawTint(options);
   }
   ImGui::PopID();

@@ -7,6 +7,8 @@
 #include <cctype>
 #include <filesystem>
 #include <nlohmann/json.hpp>
+#include <optional>
+#include <vector>
 
 #include "apps/view/view_options.h"
 #include "engine/core/error.h"
@@ -64,9 +66,23 @@ void openVolume(ViewState& state, const std::string& file) {
   state.show(scene, sequence);
 }
 
+/// The sequence of a folder's first OpenVDB file, or that file; nothing of a folder without.
+std::optional<std::string> volumeOfFolder(const std::string& folder) {
+  std::vector<std::string> files;
+  std::error_code problem;
+  for (std::filesystem::directory_iterator at(folder, problem), end; !problem && at != end; at.increment(problem))
+    if (hasEnding(at->path(), {".vdb"})) files.push_back(at->path().string());
+  if (files.empty()) return std::nullopt;
+  const std::string first = *std::ranges::min_element(files);
+  const std::optional<Sequence> sequence = sequenceAround(first);
+  return sequence ? sequence->pattern : first;
+}
+
 }  // namespace
 
-void openFile(ViewState& state, const std::string& file) {
+void openFile(ViewState& state, const std::string& opened) {
+  const std::optional<std::string> ofFolder = std::filesystem::is_directory(opened) ? volumeOfFolder(opened) : std::nullopt;
+  const std::string& file = ofFolder ? *ofFolder : opened;
   const bool named = proceduralName(file) || isPattern(file);
   if (!named && !std::filesystem::exists(file))
     fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", file);

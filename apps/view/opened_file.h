@@ -9,10 +9,10 @@
 
 namespace freevoxels {
 
-/// A volume (.vdb, .fvx, `procedural:NAME`, or the pattern of a sequence), a scene or a transfer function (.json),
-/// or the light around (.exr). What is wrong with the file itself is said later, by the image, but for a
-/// scene. Fails with `state` as it was.
-void openFile(ViewState& state, const std::string& file);
+/// A volume (.vdb, .fvx, `procedural:NAME`, the pattern of a sequence, or a folder of slices or of OpenVDB files, of which the first or its
+/// sequence is opened), a scene or a transfer function (.json), or the light around (.exr). What is wrong with the file itself is said
+/// later, by the image, but for a scene. Fails with `state` as it was.
+void openFile(ViewState& state, const std::string& opened);
 
 /// Whether it is added to recent files: files that make an image on their own.
 bool isWorthRemembering(const std::string& file);

@@ -3,9 +3,9 @@
 #include <imgui.h>
 
 #include <cmath>
-#include <filesystem>
-#include <initializer_list>
-#include <string>
+#include <span>
+
+#include "apps/view/font_files.h"
 
 namespace freevoxels {
 
@@ -15,26 +15,11 @@ namespace {
 constexpr ImWchar kGlyphs[]{0x0020, 0x024F, 0x0370, 0x052F, 0x2010, 0x2027, 0x2070, 0x209F,
                             0x2190, 0x21FF, 0x2200, 0x22FF, 0x25A0, 0x25FF, 0};
 
-void addFont(const char* file, std::initializer_list<const char*> otherFiles, float pixels) {
-  static const std::string kFolders[]{"/usr/share/fonts/truetype/dejavu/", "/usr/share/fonts/truetype/noto/",
-                                      "/usr/share/fonts/dejavu-sans-fonts/", "/usr/share/fonts/TTF/", "/usr/share/fonts/dejavu/",
-                                      "/usr/share/fonts/noto/"};
-  ImFontAtlas& fonts = *ImGui::GetIO().Fonts;
-  const auto add = [&](const char* name) {
-    for (const std::string& folder : kFolders) {
-      std::error_code unreadable;
-      if (std::filesystem::is_regular_file(folder + name, unreadable) &&
-          fonts.AddFontFromFileTTF((folder + name).c_str(), pixels, nullptr, kGlyphs) != nullptr)
-        return true;
-    }
-    return false;
-  };
-  if (add(file)) return;
-  for (const char* const other : otherFiles)
-    if (add(other)) return;
-  ImFontConfig own;
-  own.SizePixels = pixels;
-  fonts.AddFontDefault(&own);
+void addFont(std::span<const unsigned char> file, float pixels) {
+  ImFontConfig config;
+  config.FontDataOwnedByAtlas = false;
+  // Dear ImGui takes the bytes as its own to change, and leaves them as they are.
+  ImGui::GetIO().Fonts->AddFontFromMemoryTTF(const_cast<unsigned char*>(file.data()), int(file.size()), pixels, &config, kGlyphs);
 }
 
 ImVec4 grey(float value, float alpha = 1.0f) {
@@ -75,8 +60,8 @@ void setColors(ImGuiStyle& style) {
 
 void applyTheme(float scale) {
   const float pixels = std::round(kFontPixels * scale);
-  addFont("DejaVuSans.ttf", {"NotoSans-Regular.ttf"}, pixels);
-  addFont("DejaVuSansMono.ttf", {"NotoSansMono-Regular.ttf", "NotoMono-Regular.ttf"}, std::round(0.86f * pixels));
+  addFont(sansFont(), pixels);
+  addFont(monospacedFontFile(), std::round(0.86f * pixels));
   ImGui::StyleColorsDark();
   ImGuiStyle& style = ImGui::GetStyle();
   setColors(style);

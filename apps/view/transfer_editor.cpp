@@ -14,9 +14,8 @@ namespace {
 
 constexpr float kHeight = 9.0f;      // of the plot, in units of the font's size
 constexpr float kColumn = 2.0f;      // pixels
-constexpr ImU32 kGround = IM_COL32(20, 22, 26, 255), kBars = IM_COL32(96, 104, 116, 255),
-                kLines = IM_COL32(255, 255, 255, 28), kLineTexts = IM_COL32(255, 255, 255, 90),
-                kCurve = IM_COL32(240, 240, 240, 255), kSelected = IM_COL32(255, 196, 64, 255);
+constexpr ImU32 kGround = IM_COL32(20, 22, 26, 255), kBars = IM_COL32(96, 104, 116, 255), kLines = IM_COL32(255, 255, 255, 28),
+                kLineTexts = IM_COL32(255, 255, 255, 200), kCurve = IM_COL32(240, 240, 240, 255), kSelected = IM_COL32(255, 196, 64, 255);
 
 /// Logarithms of counts, relative to the largest that is in view.
 void drawHistogram(ImDrawList& list, const Histogram& histogram, const PlotSpan& span, float top,
@@ -48,14 +47,20 @@ bool OpacityCurve::draw(TransferModel& model, glm::dvec2 range, const Histogram*
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.AddRectFilled(low, high, kGround, ImGui::GetStyle().FrameRounding);
   if (histogram) drawHistogram(list, *histogram, frame.span, frame.top, frame.bottom, range);
-  for (const auto& [alpha, name] : {std::pair(0.001, "0.001"), {0.01, "0.01"}, {0.1, "0.1"}, {0.5, "0.5"}}) {
-    list.AddLine({low.x, frame.y(alpha)}, {high.x, frame.y(alpha)}, kLines);
-    list.AddText({low.x + 2.0f, frame.y(alpha) - text}, kLineTexts, name);
-  }
+  constexpr std::array kMarks{std::pair(0.5, "0.5"), std::pair(0.1, "0.1"), std::pair(0.01, "0.01"), std::pair(0.001, "0.001")};
+  for (const auto& [alpha, name] : kMarks) list.AddLine({low.x, frame.y(alpha)}, {high.x, frame.y(alpha)}, kLines);
   for (float pixel = frame.span.low; pixel < frame.span.high; pixel += kColumn) {
     const double x = frame.span.x(pixel);
     list.AddRectFilled({pixel, frame.y(model.alphaAt(x))}, {pixel + kColumn, frame.bottom},
                        shownColor(model.colorAt(x), 0.55f));
+  }
+  float next = low.y;  // where no other name is
+  for (const auto& [alpha, name] : kMarks) {
+    if (frame.y(alpha) - text < next) continue;
+    const ImVec2 place(low.x + 2.0f, frame.y(alpha) - text);
+    list.AddText({place.x + 1.0f, place.y + 1.0f}, kGround, name);
+    list.AddText(place, kLineTexts, name);
+    next = frame.y(alpha);
   }
   drawPoints(model, frame);
   changed |= drawFields(model, range);

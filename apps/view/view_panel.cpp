@@ -34,8 +34,8 @@ void drawCamera(ViewState& state) {
   if (choose("Projection", {"perspective", "orthographic"}, projection)) return state.setCamera(withOtherProjection(camera));
   hint("O switches it", "--orthographic");
   if (camera.orthographic)
-    moved |= slideLogarithmic("Height", camera.orthographicHeight, 0.01 * camera.orthographicHeight,
-                              100.0 * camera.orthographicHeight, "%.4g units");
+    moved |=
+        slideLogarithmic("Height", camera.orthographicHeight, 0.01 * camera.orthographicHeight, 100.0 * camera.orthographicHeight, "%.4g");
   else
     moved |= slide("Field of view", camera.verticalFov, 5.0, 120.0, "%.0f°");
   hint("Of the image's height", camera.orthographic ? "--orthographic" : "--fov");

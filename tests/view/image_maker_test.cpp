@@ -4,6 +4,8 @@
 
 #include "apps/view/export_files.h"
 #include "engine/volume/openvdb_trees.h"
+#include "engine/volume/procedural.h"
+#include "engine/volume/vdb.h"
 #include "tests/device/device_fixture.h"
 #include "tests/failing_allocation.h"
 #include "tests/image_measures.h"
@@ -45,6 +47,30 @@ TEST_F(ImageMakerTest, TurningALightKeepsTheVolumeAndItsOccupancy) {
   EXPECT_EQ(timesOf(turned, "upload"), timesOf(first, "upload")) << "measured once";
   EXPECT_EQ(timesOf(first, "bricks").size(), 1u);
   EXPECT_EQ(timesOf(turned, "bricks").size(), 0u);
+}
+
+TEST_F(ImageMakerTest, ASequenceIsSavedWithTheCameraOfTheImage) {
+  const test::TemporaryFolder folder;
+  Sequence sequence{.pattern = (folder.path() / "c_#.vdb").string(), .files = {}, .numbers = {}};
+  for (const int number : {2, 7}) {
+    sequence.files.push_back((folder.path() / fmt::format("c_{}.vdb", number)).string());
+    sequence.numbers.push_back(FrameNumber(number));
+    writeVdb(sequence.files.back(), makeProcedural("cloud", 10 + number), "density");
+  }
+  ImageRequest request = litCloud();
+  request.scene.input = {.volume = sequence.files.front()};
+  request.isFrame = true;
+  const DrawnImage shown = maker_.make(request, {});
+  request.scene.camera.look(shown.scene.camera);
+  request.scene.classification.takeDensityScale(shown.scene.classification.densityScale);
+  const DrawnImage kept = maker_.make(request, {});
+  saveSequence(device(), kept, sequence, (folder.path() / "f_##.exr").string(), [](std::string_view, double) {});
+  for (std::size_t i = 0; i < 2; ++i) {
+    request.scene.input.volume = sequence.files[i];
+    const Image drawn = downloadImage(device(), *maker_.make(request, {}).image);
+    const Image saved = readExr((folder.path() / fmt::format("f_{:02}.exr", i == 0 ? 2 : 7)).string());
+    EXPECT_GT(psnr(saved, drawn), 60.0) << "as 16-bit floats";
+  }
 }
 
 /// With the camera of the image, whose automatic place would depend on the shape of the image.

@@ -81,6 +81,19 @@ TEST_F(OpenedFile, APatternIsItsFirstFrame) {
   EXPECT_FALSE(state.sequence) << "one file is opened alone";
 }
 
+TEST_F(OpenedFile, AFolderOfOpenVdbFilesIsItsSequenceOrItsFirstFile) {
+  made("s_2.vdb");
+  made("s_1.vdb");
+  openFile(state, folder.path().string());
+  EXPECT_EQ(state.scene.input.volume, (folder / "s_1.vdb").string());
+  ASSERT_TRUE(state.sequence);
+  EXPECT_EQ(state.sequence->files.size(), 2u);
+  std::filesystem::remove(folder / "s_2.vdb");
+  openFile(state, folder.path().string());
+  EXPECT_EQ(state.scene.input.volume, (folder / "s_1.vdb").string());
+  EXPECT_FALSE(state.sequence);
+}
+
 TEST_F(OpenedFile, ASceneBringsAllButTheSize) {
   made("smoke.vdb");
   openFile(state, made("scene.json", R"({"input": {"volume": "smoke.vdb"}, "output": {"float": true},
