@@ -26,25 +26,30 @@ bool DeviceScene::reclassify(const Classification& other) {
   if (!built.volume.scalarBricks || !other.isPost(hostVolume)) return false;
   const TransferFunction& function = *other.transferFunction;
   const double extinctionScale = kStoredDepth * built.volume.voxelSize;
-  if (!built.volume.scalarBricks->reclassify(device, hostVolume, function, extinctionScale)) {
-    try {
-      built.volume.scalarBricks = uploadScalars(device, hostVolume, function, extinctionScale);
-    } catch (const Error& error) {
-      if (error.kind() != ErrorKind::OutOfMemory) throw;
-      return false;
+  std::optional<DeviceVolume> withoutBlocks;
+  std::optional<DeviceScalars> otherScalars;
+  try {
+    if (built.hasBlocks()) withoutBlocks = makeDeviceVolume(device, hostVolume, other);
+    if (!built.volume.scalarBricks->reclassify(device, hostVolume, function, extinctionScale)) {
+      otherScalars = uploadScalars(device, hostVolume, function, extinctionScale);
+      ++codesVersion_;
     }
-    ++codesVersion_;
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::OutOfMemory) throw;
+    return false;
+  }
+  // Nothing fails from here on.
+  if (otherScalars) built.volume.scalarBricks = std::move(otherScalars);
+  if (withoutBlocks) {
+    withoutBlocks->scalarBricks = std::move(built.volume.scalarBricks);
+    built = {.volume = *std::move(withoutBlocks)};
   }
   classification = other;
-  if (built.hasBlocks()) {
-    std::optional<DeviceScalars> kept = std::move(built.volume.scalarBricks);
-    built = {.volume = makeDeviceVolume(device, hostVolume, classification)};
-    built.volume.scalarBricks = std::move(kept);
-  }
   occupiedCells_.reset();
   table_.reset();
   largestDepths_.clear();
   if (lights_) lights_->outdate();
+  if (scattering_ && !scattering_->isSolved()) scattering_.reset();
   scatteringIsOld_ = scattering_.has_value();
   return true;
 }
@@ -92,12 +97,18 @@ void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, Fra
   // First, as a solution takes memory while it is computed.
   scatters_ = hasScatteredLight(*settings.lighting, built.volume.hasEmission());
   if (scatters_ && !(scatteringIsOld_ && settings.allowsOldLight)) {
+    std::optional<ScatteringSolver> other;  // the old light stays until this is complete, for a draft that follows if it is given up
     if (!scattering_ || scatteringIsOld_) {
       const StageTimer timer(frameTimes, "scattering medium");
-      scattering_.emplace(device, ScatteringMedium(hostVolume, classification));
-      scatteringIsOld_ = false;
+      other.emplace(device, ScatteringMedium(hostVolume, classification));
     }
-    scattering_->solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
+    ScatteringSolver& solver = other ? *other : *scattering_;
+    solver.solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
+    if (other) {
+      scattering_.reset();
+      scattering_.emplace(*std::move(other));
+    }
+    scatteringIsOld_ = false;
   }
   prepareOwnLights(settings, scalars, constants, progress);
   if (scatters_) setScattered(constants, *settings.lighting, *scattering_);

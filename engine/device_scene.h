@@ -40,7 +40,7 @@ class DeviceScene {
 
   VolumeMemory memory() const;
   /// Goes on with another transfer function of scalars, and keeps what does not depend on it. Where there are no scalars, or too little
-  /// memory, returns false, and nothing changes.
+  /// memory for what is to be made now, returns false, and nothing changes.
   bool reclassify(const Classification& other);
   /// Another number whenever scalars have got other codes.
   int codesVersion() const { return codesVersion_; }

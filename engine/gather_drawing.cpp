@@ -13,16 +13,30 @@
 
 namespace freevoxels {
 
-void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress) {
+/// The volume with room for what the frame needs. One that has followed other functions may have more bricks than this one needs: where
+/// there is not enough memory for it, it is made anew.
+void GatherDrawing::followScene(const GatherVolume::Shading& shading) {
+  const Cells& met = scene_.occupiedCells().met();
+  if (std::exchange(codesVersion_, scene_.codesVersion()) != scene_.codesVersion()) volume_.reset();
+  const bool mayBeLarge = volume_.has_value();
   try {
-    const Cells& met = scene_.occupiedCells().met();
-    if (std::exchange(codesVersion_, scene_.codesVersion()) != scene_.codesVersion()) volume_.reset();
     if (!volume_)
       volume_.emplace(scene_.device, scene_.classification, scene_.built, met, scene_.frameTimes);
     else if (isOld_)
       volume_->reclassify(met, scene_.frameTimes);
     isOld_ = false;
     volume_->prepare(shading);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::OutOfMemory || !mayBeLarge) throw;
+    volume_.reset();
+    volume_.emplace(scene_.device, scene_.classification, scene_.built, met, scene_.frameTimes);
+    volume_->prepare(shading);
+  }
+}
+
+void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress) {
+  try {
+    followScene(shading);
     GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0, settings.holdout != nullptr,
                              settings.isProjected());
   } catch (...) {

@@ -41,6 +41,7 @@ class GatherDrawing {
   GatherPass& pass() { return *pass_; }
 
  private:
+  void followScene(const GatherVolume::Shading& shading);
   void prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress);
 
   DeviceScene& scene_;

@@ -320,7 +320,7 @@ std::vector<Result> edits(const Device& device, int resolution, int runs) {
   draft.lod = 0.2f;
   draft.allowsOldLight = true;
   draft.gather().mostSamplesAcrossPixel = 1.0;
-  draft.gather().sampleTolerance = 0.0f;
+  draft.gather().sampleTolerance = 0.25f;
   const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.6, {});
   renderer.render(camera, whole);
   Classification edited = scene.classification;

@@ -19,6 +19,7 @@
 #include "apps/common/frame_names.h"
 #include "apps/common/program.h"
 #include "apps/common/scene_options.h"
+#include "apps/view/view_state.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_json.h"
 #include "engine/octree/volume_limits.h"
@@ -185,7 +186,7 @@ void saveScene(const DrawnImage& drawn, const std::string& file) {
 
 namespace {
 
-/// Draws `count` images, of which `set` sets the request, and writes each while the next one is drawn.
+/// Draws an image for each file, for which `set` changes the request, and writes it while the next one is drawn.
 void saveFrames(const Device& device, ImageMaker& maker, ImageRequest request, std::span<const std::string> files,
                 const std::function<void(ImageRequest&, std::size_t)>& set, const Progress& progress) {
   const auto count = double(files.size());
@@ -220,9 +221,14 @@ void saveSequence(const Device& device, const DrawnImage& drawn, const Sequence&
   std::vector<std::string> files;
   for (const FrameNumber& number : sequence.numbers) files.push_back(frameName(pattern, number));
   ImageRequest request = drawn.request;
-  request.scene = sceneInto(drawn, files);
+  ViewState view;  // so that what is automatic is that of the image, and not of each frame
+  view.scene = sceneInto(drawn, files);
+  view.begin(drawn.scene);
+  view.keepScales(drawn.scene);
+  request.scene = view.scene;
   request.scene.camera.look(drawn.scene.camera);
   request.isFrame = true;
+  request.number = 1;
   request.film.clear();
   request.revision = 0;
   checkScene(request.scene, files);

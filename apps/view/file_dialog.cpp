@@ -179,41 +179,41 @@ bool FileDialog::isListed(const Entry& entry) const {
   return saves_ || containsIgnoringCase(entry.shown, typed_);
 }
 
-/// The name of the listed entry that is `step` after the one that has the current name, or the first or last.
-std::string FileDialog::next(int step) const {
+/// The name of the listed entry that is `step` after the one of this name, or the first or last.
+std::string FileDialog::next(const std::string& name, int step) const {
   std::vector<const Entry*> listed;
   for (const Entry& entry : entries_)
     if (isListed(entry)) listed.push_back(&entry);
-  if (listed.empty()) return name_;
-  const auto current = std::ranges::find(listed, name_, &Entry::name);
+  if (listed.empty()) return name;
+  const auto current = std::ranges::find(listed, name, &Entry::name);
   const auto count = int(listed.size());
   const int number = current == listed.end() ? (step > 0 ? 0 : count - 1) : std::clamp(int(current - listed.begin()) + step, 0, count - 1);
   return listed[std::size_t(number)]->name;
 }
 
-/// What all listed entries that begin with the name have in common.
-std::string FileDialog::completed() const {
+/// What all entries that begin with the name have in common.
+std::string FileDialog::completed(const std::string& name) const {
   std::optional<std::string> common;
   for (const Entry& entry : entries_) {
-    if (!startsIgnoringCase(entry.name, name_)) continue;
+    if (!startsIgnoringCase(entry.name, name)) continue;
     if (!common) common = entry.name;
     std::size_t same = 0;
     while (same < common->size() && same < entry.name.size() && (*common)[same] == entry.name[same]) ++same;
     common->resize(same);
   }
-  return common && common->size() > name_.size() ? *common : name_;
+  return common && common->size() > name.size() ? *common : name;
 }
 
 /// Tab completes the name, arrows go through the list.
 int FileDialog::followKeys(ImGuiInputTextCallbackData* data) {
   FileDialog& dialog = *static_cast<FileDialog*>(data->UserData);
-  dialog.name_.assign(data->Buf, std::size_t(data->BufTextLen));
+  const std::string text(data->Buf, std::size_t(data->BufTextLen));  // name_ is the field's for now
   if (data->EventFlag == ImGuiInputTextFlags_CallbackEdit) {
-    dialog.typed_ = dialog.name_.find('/') == std::string::npos && !proceduralName(dialog.name_) ? dialog.name_ : "";
+    dialog.typed_ = text.find('/') == std::string::npos && !proceduralName(text) ? text : "";
     return 0;
   }
   const bool completes = data->EventFlag == ImGuiInputTextFlags_CallbackCompletion;
-  const std::string name = completes ? dialog.completed() : dialog.next(data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
+  const std::string name = completes ? dialog.completed(text) : dialog.next(text, data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
   if (completes) dialog.typed_ = name;
   data->DeleteChars(0, data->BufTextLen);
   data->InsertChars(0, name.c_str());

@@ -53,8 +53,8 @@ class FileDialog {
   bool drawTile(const std::string& file, const std::string& label);
   void drawName();
   static int followKeys(ImGuiInputTextCallbackData* data);
-  std::string next(int step) const;
-  std::string completed() const;
+  std::string next(const std::string& name, int step) const;
+  std::string completed(const std::string& name) const;
   void confirm(const std::string& name);
   const Texture* thumbnail(const std::string& file);
 

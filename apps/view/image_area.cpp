@@ -130,7 +130,7 @@ void ImageArea::dragClip(ViewState& state) const {
     ClipPlane plane = *clip_.plane;
     plane.point += voxels * state.latest->scene.volume->voxelSize() * glm::normalize(plane.normal);
     if (plane.point != now.clipPlane->point) state.clip(now.clipBox, plane);
-  } else if (now.clipBox) {
+  } else if (now.clipBox && state.latest->whole) {
     const VoxelBox box = withSideMoved(*clip_.box, clip_.side, int(std::lround(voxels)), state.latest->whole->dimensions);
     if (box.first != now.clipBox->first || box.last != now.clipBox->last) state.clip(box, now.clipPlane);
   }

@@ -99,7 +99,8 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
   if (&thread == &whole_) {
     wholeRevision_ = request.revision;
     classified_.reset();
-    if (const Scene& scene = result.drawn->scene; scene.added.empty() && scene.classification.isPost(*scene.volume))
+    if (const Scene& scene = result.drawn->scene;
+        result.drawn->isWholeOnDevice && scene.added.empty() && scene.classification.isPost(*scene.volume))
       classified_ = request.scene;
   }
   const bool isWhole = request.purpose == Purpose::Whole;
@@ -225,7 +226,6 @@ void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
     if (state.changed) ++revision_, noteEdit(state.scene);
     lastChange_ = now;
     ++lastRequest_;
-    volumes_.mayRead();
     refines_ = false;
     if (!state.changed || !mix(state)) askOfChange(state);
     asked_ = state.scene;

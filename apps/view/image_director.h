@@ -35,7 +35,7 @@ class ImageDirector {
   std::optional<std::pair<std::string, double>> activity() const;
   /// Whether a file is being read; gives that up, so that there is no image until something changes.
   bool reads() const { return volumes_.reading().has_value(); }
-  void giveUpReading() { volumes_.giveUp(); }
+  void giveUpReading() { volumes_.giveUp(lastRequest_); }
 
   /// Abandons everything, for good, without waiting for that.
   void end();
@@ -58,7 +58,7 @@ class ImageDirector {
   std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
   std::uint64_t revision_ = 1, wholeRevision_ = 0;  ///< of everything but the camera; that of the last image of all voxels
   Clock::time_point lastChange_;
-  /// Of images of all voxels, and of others.
+  /// Pace of images of all voxels, and of other quick images.
   AdaptiveResolution movePace_{AdaptiveResolution::Voxels::All}, editPace_{AdaptiveResolution::Voxels::Fewer};
   ImageRate rate_;
   Purpose lastPurpose_ = Purpose::Whole;

@@ -55,10 +55,10 @@ int blockEdge(const Volume& volume, int voxelsAlongEdge) {
 VolumeCache::VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume)
     : maximumVoxels_(volume->voxelCount()), clippedName_(nameOf(scene, true)), clipped_(std::move(volume)) {}
 
-std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene, bool isFrame) {
+VolumeCache::Read VolumeCache::read(const SceneDescription& scene, std::uint64_t number, bool isFrame) {
   const std::lock_guard lock(mutex_);
   const std::string clippedName = nameOf(scene, true);
-  if (clipped_ && clippedName == clippedName_) return clipped_;
+  if (clipped_ && clippedName == clippedName_) return {clipped_, whole_};
   clipped_ = nullptr;  // not both at once
   const std::string name = nameOf(scene, false);
   if (!whole_ || name != name_) {
@@ -68,13 +68,13 @@ std::shared_ptr<const Volume> VolumeCache::read(const SceneDescription& scene, b
     unclipped.input.clipPlane.reset();
     if (!isFrame) frames_.clear();
     const auto kept = std::ranges::find(frames_, name, [](const auto& frame) { return frame.first; });
-    whole_ = kept != frames_.end() ? kept->second : readWhole(unclipped, isFrame);
+    whole_ = kept != frames_.end() ? kept->second : readWhole(unclipped, number, isFrame);
     if (isFrame) keepFrame(name, whole_);
     name_ = name;
   }
   clipped_ = scene.input.clipBox || scene.input.clipPlane ? std::make_shared<const Volume>(scene.input.clip(*whole_)) : whole_;
   clippedName_ = clippedName;
-  return clipped_;
+  return {clipped_, whole_};
 }
 
 std::shared_ptr<const FilmView> VolumeCache::viewOf(const SceneDescription& scene, const std::vector<std::string>& files) {
@@ -88,9 +88,9 @@ std::shared_ptr<const FilmView> VolumeCache::viewOf(const SceneDescription& scen
   return film_;
 }
 
-std::shared_ptr<const Volume> VolumeCache::readWhole(const SceneDescription& scene, bool isFrame) {
+std::shared_ptr<const Volume> VolumeCache::readWhole(const SceneDescription& scene, std::uint64_t number, bool isFrame) {
   const Progress progress = [&](std::string_view, double fraction) {
-    if (givesUp_) fail(ErrorKind::Input, "reading '{}' was given up: open it again to read it", scene.input.volume);
+    if (number < mayBeRead_) fail(ErrorKind::Input, "reading '{}' was given up: open it again to read it", scene.input.volume);
     read_ = fraction;
   };
   struct Ended {
@@ -123,11 +123,6 @@ std::optional<double> VolumeCache::reading() const {
   return fraction == kNotReading ? std::nullopt : std::optional(fraction);
 }
 
-std::shared_ptr<const Volume> VolumeCache::whole() const {
-  const std::lock_guard lock(mutex_);
-  return whole_;
-}
-
 ImageMaker::ImageMaker(const Device& device, VolumeCache& volumes)
     : device_(device), volumes_(volumes), kept_(device), diagnoser_(device) {}
 
@@ -149,8 +144,7 @@ std::shared_ptr<const VolumeSource> ImageMaker::coarse(const Scene& scene, int v
 }
 
 /// Sums over the volume, the environment and the histogram are made once for all cameras.
-Scene ImageMaker::resolve(const ImageRequest& request, const FilmView* film) {
-  std::shared_ptr<const Volume> volume = volumes_.read(request.scene, request.isFrame);
+Scene ImageMaker::resolve(const ImageRequest& request, std::shared_ptr<const Volume> volume, const FilmView* film) {
   if (scene_ && request.revision != 0 && request.revision == revision_ && scene_->volume == volume) {
     scene_->camera = request.scene.cameras(*scene_).front();
     return *scene_;
@@ -197,8 +191,12 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   if (progress) progress(before == input_ ? "preparing" : "reading " + input_, 0.0);
   const std::shared_ptr<const FilmView> film = request.film.empty() ? nullptr : volumes_.viewOf(request.scene, request.film);
   if (!request.film.empty() && !film) fail(ErrorKind::Input, "no frame of the sequence holds anything to draw");
-  DrawnImage drawn{
-      .request = request, .scene = resolve(request, film.get()), .film = film, .whole = volumes_.whole(), .device = device_.description()};
+  VolumeCache::Read read = volumes_.read(request.scene, request.number, request.isFrame);
+  DrawnImage drawn{.request = request,
+                   .scene = resolve(request, std::move(read.volume), film.get()),
+                   .film = film,
+                   .whole = std::move(read.whole),
+                   .device = device_.description()};
   if (drawn.scene.volume->madeOf == MadeOf::Channels) drawn.channels = request.scene.shownChannels();
   const auto start = std::chrono::steady_clock::now();
   const std::shared_ptr<const VolumeSource> source = coarse(drawn.scene, request.voxelsAlongEdge);
@@ -210,7 +208,7 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   settings.holdout = holdoutOf(request);
   if (request.purpose != Purpose::Whole && settings.gathers()) {  // a draft
     settings.gather().mostSamplesAcrossPixel = 1.0;
-    settings.gather().sampleTolerance = 0.0f;
+    settings.gather().sampleTolerance = 0.25f;  // four times that of a whole image: more pixels show more than exact rays
     settings.lod *= float(request.scale);
     settings.allowsOldLight = request.purpose == Purpose::Move || request.purpose == Purpose::Classify;
     if (request.purpose == Purpose::Edit || request.purpose == Purpose::Refine) settings.scatteringCoarseness = 1;
@@ -223,6 +221,7 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   drawn.image = renderer.renderOnDevice(drawn.scene.camera, settings, progress);
   drawn.shown = {drawn.image, &drawn.image->colorEnergy};
   drawn.times = renderer.timings();
+  drawn.isWholeOnDevice = !renderer.drewInCubes();
   drawn.memory = renderer.memory();
   drawn.cut = renderer.cutCounts();
   drawn.visibleVoxels = renderer.occupiedVoxelCount();

@@ -27,24 +27,26 @@ class VolumeCache {
   VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume);
 
   /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it. A frame of a
-  /// sequence may lack grids, and is a voxel without data if it holds nothing. Fails with ErrorKind::Input if reading is given up.
-  std::shared_ptr<const Volume> read(const SceneDescription& scene, bool isFrame = false);
-  /// Gives up what is being read, and all that is to be read until mayRead() is called.
-  void giveUp() { givesUp_ = true; }
-  void mayRead() { givesUp_ = false; }
+  /// sequence may lack grids, and is a voxel without data if it holds nothing. `number` is that of the request (ImageRequest), by which it
+  /// is given up: ErrorKind::Input.
+  struct Read {
+    std::shared_ptr<const Volume> volume;
+    std::shared_ptr<const Volume> whole;  ///< before it was clipped; null where it was not read here
+  };
+  Read read(const SceneDescription& scene, std::uint64_t number, bool isFrame = false);
+  /// Gives up what is being read, and what is to be read, for requests up to this number.
+  void giveUp(std::uint64_t number) { mayBeRead_ = number + 1; }
   /// The fraction of the file that has been read; nothing while none is.
   std::optional<double> reading() const;
   /// How the files of a sequence are seen as a whole (film_view.h); null if none can be drawn. Chosen once.
   std::shared_ptr<const FilmView> viewOf(const SceneDescription& scene, const std::vector<std::string>& files);
-  /// The same before it was clipped; null if it was not read here.
-  std::shared_ptr<const Volume> whole() const;
 
  private:
-  std::shared_ptr<const Volume> readWhole(const SceneDescription& scene, bool isFrame);
+  std::shared_ptr<const Volume> readWhole(const SceneDescription& scene, std::uint64_t number, bool isFrame);
   void keepFrame(const std::string& name, const std::shared_ptr<const Volume>& volume);
 
   const std::uint64_t maximumVoxels_;
-  std::atomic<bool> givesUp_ = false;
+  std::atomic<std::uint64_t> mayBeRead_ = 0;  ///< the first request that is not given up
   static constexpr double kNotReading = -1.0;
   std::atomic<double> read_ = kNotReading;
   mutable std::mutex mutex_;
@@ -94,6 +96,7 @@ struct DrawnImage {
   std::shared_ptr<const ColorLayers> layers;     ///< where the request wants them and there are some, and then no image
   std::vector<StageTime> times;
   double milliseconds = 0.0;  ///< in total, without reading files
+  bool isWholeOnDevice = true;  ///< whether it was not drawn cube by cube
   VolumeMemory memory;
   CutCounts cut;
   std::vector<ChannelStyle> channels;          ///< that are drawn, if any (SceneDescription::shownChannels)
@@ -112,7 +115,7 @@ class ImageMaker {
   DrawnImage make(const ImageRequest& request, const Progress& progress);
 
  private:
-  Scene resolve(const ImageRequest& request, const FilmView* film);
+  Scene resolve(const ImageRequest& request, std::shared_ptr<const Volume> volume, const FilmView* film);
   std::shared_ptr<const VolumeSource> coarse(const Scene& scene, int voxelsAlongEdge);
   std::shared_ptr<const Holdout> holdoutOf(const ImageRequest& request);
 

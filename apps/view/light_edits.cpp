@@ -3,6 +3,8 @@
 #include <algorithm>
 #include <cmath>
 
+#include "apps/view/transfer_model.h"
+
 namespace freevoxels {
 
 namespace {
@@ -65,9 +67,10 @@ LightingDescription::GivenLight newLight(const Camera& camera, const Volume& vol
     given.light.place = rounded(
         glm::dvec3(volume.indexToWorld * glm::dvec4(middle, 1.0)) + kBeyondBox * std::min({ways.x, ways.y, ways.z}) * fromAbove, steps);
   }
-  if (others > 0) {  // which by themselves light the volume well
+  if (others > 0) {  // the others light the volume well by themselves
     given.hasIntensity = true;
-    given.light.intensity = rounded(glm::dvec3(fill * defaultIntensity(given.light, volume)), 1e3).x;
+    const double intensity = fill * defaultIntensity(given.light, volume);
+    given.light.intensity = roundedTo(intensity, std::pow(10.0, std::floor(std::log10(intensity)) - 2.0));
   }
   return given;
 }

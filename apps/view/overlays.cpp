@@ -221,7 +221,7 @@ ClipHandles::ClipHandles(const ViewState& state, const ImageFrame& frame) {
 }
 
 void ClipHandles::addBox(const ViewState& state, const ImageFrame& frame) {
-  if (!state.scene.input.clipBox || !state.latest->request.scene.input.clipBox) return;
+  if (!state.scene.input.clipBox || !state.latest->request.scene.input.clipBox || !state.latest->whole) return;
   const VoxelBox& box = *state.scene.input.clipBox;
   const glm::dvec3 first(box.first), last(glm::min(box.last, state.latest->whole->dimensions - 1));
   // The drawn volume begins at the first voxel of the box that it was drawn with.

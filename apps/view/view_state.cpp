@@ -90,7 +90,7 @@ void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<Cli
 void EditHistory::restore(ViewState& state, std::optional<Edits> edits) {
   if (!edits) return;
   const glm::ivec2 size = state.scene.camera.size;
-  const std::optional<Camera> camera = state.scene.input.volume == edits->scene.input.volume ? state.camera : std::nullopt;
+  const std::optional<Camera> camera = openedName(state) == openedName(*edits) ? state.camera : std::nullopt;
   static_cast<Edits&>(state) = *std::move(edits);
   state.scene.camera.size = size;
   if (camera && state.camera) {
@@ -102,8 +102,8 @@ void EditHistory::restore(ViewState& state, std::optional<Edits> edits) {
 }
 
 void CameraHistory::follow(const ViewState& state, bool moved, bool busy) {
-  if (state.scene.input.volume != volume_) steps_ = {};
-  volume_ = state.scene.input.volume;
+  if (openedName(state) != seen_ || !state.camera) steps_ = {};
+  seen_ = openedName(state);
   if (state.camera) steps_.follow(*state.camera, moved, busy);
 }
 

@@ -70,6 +70,11 @@ struct ViewState : Edits {
   void clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane);
 };
 
+/// The file that was opened: the volume, or the pattern of the sequence of which it is a frame.
+inline const std::string& openedName(const Edits& edits) {
+  return edits.sequence ? edits.sequence->pattern : edits.scene.input.volume;
+}
+
 /// Earlier states of what the user changes. All changes between two moments in which the user does nothing are one step.
 template <typename State>
 class Steps {
@@ -136,15 +141,20 @@ class CameraHistory {
   void follow(const ViewState& state, bool moved, bool busy);
   bool canGoBack() const { return steps_.canUndo(); }
   bool canGoForward() const { return steps_.canRedo(); }
-  void goBack(ViewState& state) { go(state, steps_.undo(*state.camera)); }
-  void goForward(ViewState& state) { go(state, steps_.redo(*state.camera)); }
+  /// Do nothing if there is no such camera, or none now.
+  void goBack(ViewState& state) {
+    if (state.camera) go(state, steps_.undo(*state.camera));
+  }
+  void goForward(ViewState& state) {
+    if (state.camera) go(state, steps_.redo(*state.camera));
+  }
 
  private:
   static void go(ViewState& state, const std::optional<Camera>& camera) {
     if (camera) state.setCamera(*camera);
   }
 
-  std::string volume_;  ///< that was seen
+  std::string seen_;  ///< openedName() of what was seen
   Steps<Camera> steps_;
 };
 

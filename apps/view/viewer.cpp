@@ -45,10 +45,6 @@ std::string titleOf(const ViewState& state) {
   return printable(state.scene.input.volume) + " - FreeVoxels";
 }
 
-std::string openedName(const ViewState& state) {
-  return state.sequence ? state.sequence->pattern : state.scene.input.volume;
-}
-
 void makeTexture(const Device& device, std::unique_ptr<Texture>& texture, glm::ivec2 size) {
   if (!texture || texture->size() != size) texture = std::make_unique<Texture>(device, size, "image");
 }
@@ -101,7 +97,8 @@ void Viewer::takeImages() {
 
 void Viewer::showLatest() {
   newImage_ = true;
-  const DrawnImage& drawn = *state_.latest;
+  drawn_ = state_.latest;
+  const DrawnImage& drawn = *drawn_;
   const bool isWhole = state_.latest == state_.whole;
   before_ = nullptr;
   if (isWhole && texture_ && state_.scene.output.look().background) before_ = std::move(texture_);
@@ -121,8 +118,8 @@ bool Viewer::fades() const {
 void Viewer::recordImage(Commands& commands) const {
   if (!newImage_) return;
   const DisplayLook look = state_.scene.output.look();
-  display_.record(commands, *state_.latest->shown, look, *texture_);
-  if (comparedTexture_) display_.record(commands, *state_.latest->compared, look, *comparedTexture_);
+  display_.record(commands, *drawn_->shown, look, *texture_);
+  if (comparedTexture_) display_.record(commands, *drawn_->compared, look, *comparedTexture_);
 }
 
 std::array<ActionState, kActions> Viewer::actionStates() const {
@@ -132,8 +129,8 @@ std::array<ActionState, kActions> Viewer::actionStates() const {
   of(Action::RestoreScene).enabled = !store_.lastScene().empty() && std::filesystem::exists(store_.lastScene(), unknown);
   of(Action::Undo).enabled = history_.canUndo();
   of(Action::Redo).enabled = history_.canRedo();
-  of(Action::PreviousView).enabled = cameras_.canGoBack();
-  of(Action::NextView).enabled = cameras_.canGoForward();
+  of(Action::PreviousView).enabled = state_.camera && cameras_.canGoBack();
+  of(Action::NextView).enabled = state_.camera && cameras_.canGoForward();
   for (const Action action : {Action::CopyImage, Action::CopyCommand}) of(action).enabled = state_.whole != nullptr;
   of(Action::Axes).ticked = state_.overlays.axes;
   of(Action::Box).ticked = state_.overlays.box;
@@ -164,9 +161,9 @@ void Viewer::perform(Action action) {
     case Action::Undo: return history_.undo(state_);
     case Action::Redo: return history_.redo(state_);
     case Action::PreviousView:
-      return cameras_.canGoBack() ? cameras_.goBack(state_) : void();
+      return cameras_.goBack(state_);
     case Action::NextView:
-      return cameras_.canGoForward() ? cameras_.goForward(state_) : void();
+      return cameras_.goForward(state_);
     case Action::CopyImage: return export_.copyImage();
     case Action::CopyCommand: return ExportPanel::copyCommand(state_);
     case Action::AddBookmark: return addBookmark(state_, store_);
@@ -324,7 +321,7 @@ void Viewer::act() {
   history_.follow(state_, edited_, busy);
   cameras_.follow(state_, moved, busy);
   if (state_.retoned) {
-    newImage_ = state_.latest != nullptr;
+    newImage_ = drawn_ != nullptr;
     state_.retoned = false;
   }
   takeOutput();
@@ -358,6 +355,8 @@ void Viewer::drawFrame() {
   drawWindow();
   act();
   ImGui::Render();
+  // Before the window is painted, so that the next image is drawn meanwhile.
+  director_.ask(state_, area_.pixels(), area_.moves() || volume_.frames().plays());
   if (!paint) return;
   painted_ = Clock::now();
   painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { recordImage(commands); });
@@ -409,7 +408,6 @@ void Viewer::run() {
     if ((title.empty() || !isOpening()) && title != titleOf(state_)) window_.setTitle(title = titleOf(state_));
     takeImages();
     drawFrame();
-    director_.ask(state_, area_.pixels(), area_.moves() || volume_.frames().plays());
     rememberOpened();
     if (options_.screenshot && completeFrames_ >= options_.after.value_or(1)) return;
   }

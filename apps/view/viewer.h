@@ -69,6 +69,7 @@ class Viewer {
   Swapchain swapchain_;
   std::unique_ptr<UiPainter> painter_;
   DisplayPass display_;
+  std::shared_ptr<const DrawnImage> drawn_;  ///< of the textures
   std::unique_ptr<Texture> texture_, before_, comparedTexture_;
 
   ViewState state_;

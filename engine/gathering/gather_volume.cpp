@@ -81,6 +81,8 @@ void GatherVolume::reclassify(const Cells& met, std::vector<StageTime>& times) {
   const std::uint32_t before = capacity_, bricks = bricks_.count();
   const bool wasInPieces = inPieces_;
   include(met, times);
+  sources_ = {};  // of as many blocks as there were
+  extras_ = {};
   if (inPieces_ || wasInPieces) {
     quads_ = {};
     lightCodes_ = {};
@@ -90,12 +92,12 @@ void GatherVolume::reclassify(const Cells& met, std::vector<StageTime>& times) {
     lightMade_ = gradientsMade_ = {};
     return;
   }
-  sources_ = {};  // of as many blocks as there were
-  extras_ = {};
   // What is made of voxels' codes stays. Blocks above them are others, and their quads, too.
   shadedLevels_ = 0;
   for (GatherBricks::Made* const made : {&lightMade_, &gradientsMade_, &quads_[0].made, &quads_[1].made, &quads_[2].made})
     made->levels &= 1;
+  if (lit_)  // their quads have source terms
+    for (Quads& quads : quads_) quads.made = {};
   // The light at the sides of a brick is that of its neighbours, which may be new.
   for (Quads& quads : quads_) {
     quads.lightMade.levels &= 1;
@@ -199,13 +201,15 @@ void GatherVolume::prepare(const Shading& shading) {
   const bool viewDependent = lit && dependsOnView(*shading.lighting);
   const bool emissionWasApart = hasEmissionApart();
   const std::uint64_t version = shading.scattered != nullptr ? shading.scattered->version() : 0;
-  const bool sameSources =
-      lit == lit_ && !viewDependent && !viewDependent_ && (!lit || (lighting_ == *shading.lighting && version == scatteredVersion_));
+  const std::uint64_t lightsVersion = lit && shading.lights != nullptr ? shading.lights->version() : 0;
+  const bool sameLight = !lit || (lighting_ == *shading.lighting && version == scatteredVersion_ && lightsVersion == sourceLightsVersion_);
+  const bool sameSources = lit == lit_ && !viewDependent && !viewDependent_ && sameLight;
   sourceUnit_ = sourceUnit(built_.volume, lit ? shading.lighting : nullptr);
   lit_ = lit;
   viewDependent_ = viewDependent;
   scattered_ = shading.scattered;
   scatteredVersion_ = version;
+  sourceLightsVersion_ = lightsVersion;
   deltaScale_ = shading.frame.setup.lighting.deltaScale;
   if (shading.lighting != nullptr)
     lighting_ = *shading.lighting;

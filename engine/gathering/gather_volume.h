@@ -187,7 +187,7 @@ class GatherVolume {
   std::vector<Light> sampled_;  ///< lights that are evaluated at samples
   bool isSampled_ = false;
   const ScatteringSolver* scattered_ = nullptr;
-  std::uint64_t scatteredVersion_ = 0;  ///< that the source terms were made for
+  std::uint64_t scatteredVersion_ = 0, sourceLightsVersion_ = 0;  ///< that the source terms were made for
   glm::dvec3 deltaScale_{1.0};          ///< factor of the extinction that is left, as what is scattered forwards goes on
   /// 16 bits a block, in bricks: sqrt(optical depth / kOpaqueDepth) towards each light.
   std::array<Buffer, shader::kMaxSampleLights> lightCodes_;

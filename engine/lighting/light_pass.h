@@ -26,7 +26,7 @@ RayMemory lightRayMemory(const DeviceVolume& volume, const Lighting& lighting);
 /// Whether lights are at the same places, whatever their colours, so that what is between them and the volume is the same.
 bool standAlike(std::span<const Light> some, std::span<const Light> others);
 
-/// The lights of one volume. Everything that is computed for a light is kept until the light changes.
+/// The lights of one volume. What is computed for a light is kept until it moves, or the medium changes.
 class LightPass {
  public:
   explicit LightPass(const Device& device) : device_(device), beyond_(device) {}

@@ -2,6 +2,7 @@
 
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cmath>
 #include <memory>
 
@@ -203,7 +204,8 @@ void ScatteringSolver::solve(const Lighting& lighting, int coarseness, std::vect
   solved_ = lighting;
   brightest_ = download().brightest();
   deltaScale_ = deltaScaleOf(lighting, medium());
-  ++version_;
+  static std::atomic<std::uint64_t> versions = 0;
+  version_ = ++versions;
 }
 
 shader::ScatteredGrid ScatteringSolver::onDevice(const glm::dmat4& toMedium) const {

@@ -39,6 +39,8 @@ class ScatteringSolver {
   void solve(const Lighting& lighting, int coarseness, std::vector<StageTime>& times, const Progress& progress);
   /// Changes with each solution.
   std::uint64_t version() const { return version_; }
+  /// Whether the last solve() was completed.
+  bool isSolved() const { return solved_.has_value(); }
 
   /// vec4: J of each cell, with a phase function followed by the flux along x, y and z (rgb).
   const TexelView& texels() const { return texels_; }

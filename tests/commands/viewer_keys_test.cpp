@@ -6,7 +6,7 @@ namespace freevoxels::test {
 namespace {
 
 TEST_F(Viewer, AFileIsFoundByTypingAPartOfItsNameTabAndArrows) {
-  for (const char* const name : {"alpha_head", "beta_cloud", "beta_cube"})
+  for (const char* const name : {"alpha_head_whose_name_is_longer_than_others", "beta_cloud", "beta_cube"})
     expectSuccess(run(fmt::format("generate cube @{}.vdb --resolution 16 --quiet", name)));
   const auto session = use("procedural:cloud --resolution 16");
   session->hands("windowsize @ 900 600");
@@ -18,7 +18,7 @@ TEST_F(Viewer, AFileIsFoundByTypingAPartOfItsNameTabAndArrows) {
     session->hands("key Return mousemove 700 300 sleep 0.3");
     return sceneOf(*session, scene).at("input").at("volume").get<std::string>();
   };
-  EXPECT_EQ(openedBy("al", "key Tab", "1.json"), "alpha_head.vdb") << "completed";
+  EXPECT_EQ(openedBy("alpha_head_whose_name", "key Tab", "1.json"), "alpha_head_whose_name_is_longer_than_others.vdb") << "completed";
   EXPECT_EQ(openedBy("cu", "key Down", "2.json"), "beta_cube.vdb") << "the one that has this in its name";
   EXPECT_EQ(openedBy("beta", "key Down key Down key Up", "3.json"), "beta_cloud.vdb");
   expectQuietEnd(*session);

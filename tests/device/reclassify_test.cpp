@@ -49,11 +49,13 @@ class ReclassifyTest : public DeviceTest {
     projected.gather().projection = IntensityProjection::Maximum;
     perVoxel.lighting = light();
     for (int i = 0; i < 5; ++i) perVoxel.lighting->lights.push_back({.place = {1.0, 0.2 * i, -0.5}, .intensity = 0.3});
+    FrameSettings fog = perVoxel;
+    fog.lighting->surface = 0.0;  // whose source terms are kept from frame to frame
     FrameSettings splats{.size = {90, 70}, .method = SplatSettings{}};
     FrameSettings sorted = splats;
     sorted.splats().composite = Composite::Sorted;
     sorted.lod = 0.0f;
-    return {plain, lit, coarse, projected, perVoxel, splats, sorted};
+    return {plain, lit, coarse, projected, perVoxel, fog, splats, sorted};
   }
   static Camera camera(const Volume& volume, double azimuth) { return framingCamera(volume, azimuth, 20.0, 1.2, {}); }
 };
@@ -126,6 +128,47 @@ TEST_F(ReclassifyTest, OldLightIsAllowedForDraftsAlone) {
   EXPECT_GT(psnr(quick, complete), 15.0) << "the light of a smaller ball is not that of this one, but its surface is";
   // Light that is not old is not made again for a draft.
   EXPECT_EQ(renderer.render(view, draft).pixels, complete.pixels);
+}
+
+TEST_F(ReclassifyTest, LightOfVoxelsInADraftIsNotThatOfTheFrameAfterIt) {
+  const Volume volume = ball();
+  FrameSettings whole = kindsOfFrames()[5];
+  FrameSettings draft = whole;
+  draft.allowsOldLight = true;
+  const Camera view = camera(volume, 40.0);
+  Renderer renderer(device(), volume, above(0.3f), {});
+  renderer.render(view, whole);
+  const Classification function = above(0.6f);
+  ASSERT_TRUE(renderer.reclassify(function));
+  renderer.render(view, draft);
+  Renderer another(device(), volume, function, {});
+  EXPECT_EQ(renderer.render(view, whole).pixels, another.render(view, whole).pixels);
+}
+
+TEST_F(ReclassifyTest, ADraftFollowsAFrameThatWasGivenUp) {
+  const Volume volume = ball();
+  const FrameSettings whole{.size = {90, 70}, .lod = 0.0f, .lighting = light()};
+  FrameSettings draft = whole;
+  draft.allowsOldLight = true;
+  const Camera view = camera(volume, 40.0);
+  for (int calls = 0; calls < 8; ++calls) {
+    Renderer renderer(device(), volume, above(0.7f), {});
+    renderer.render(view, whole);
+    ASSERT_TRUE(renderer.reclassify(above(0.4f)));
+    struct GivenUp {};
+    int left = calls;
+    const Progress giveUp = [&](std::string_view, double) {
+      if (left-- == 0) throw GivenUp();
+    };
+    try {
+      renderer.render(view, whole, giveUp);
+    } catch (const GivenUp&) {
+    }
+    ASSERT_TRUE(renderer.reclassify(above(0.2f)));
+    EXPECT_NO_THROW(renderer.render(view, draft)) << "given up after " << calls << " calls";
+    Renderer another(device(), volume, above(0.2f), {});
+    EXPECT_EQ(renderer.render(view, whole).pixels, another.render(view, whole).pixels) << "given up after " << calls << " calls";
+  }
 }
 
 TEST_F(ReclassifyTest, AFrameThatWasGivenUpLosesNothing) {

@@ -172,7 +172,7 @@ TEST_F(ImageMakerTest, AfterWantOfMemoryForACoarseVolumeTheNextImageIsNotOfThePr
     ImageMaker maker(device(), volumes_);
     const DrawnImage before = maker.make(first, {});
     for (int times = 0; times < 2; ++times) {
-      volumes_.read(next.scene);
+      volumes_.read(next.scene, 1);
       const test::FailingAllocation want(sizeof(SparseGrid<std::int32_t>::Node));  // of the places of the coarse volume's first bricks
       EXPECT_ANY_THROW(maker.make(next, {}));
     }
