@@ -6,7 +6,6 @@
 #include <imgui_stdlib.h>
 
 #include <algorithm>
-#include <cctype>
 #include <chrono>
 #include <cstdlib>
 #include <ctime>
@@ -29,8 +28,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::size_t kMaxFiles = 20000;       // that are listed
-constexpr const char* kThisFolder = ".";       // the name of the entry that opens the folder itself
 constexpr double kSecondsOfDoubleClick = 0.8;  // more than ImGui has, which counts by frames: while an image is made they are slow
 
 std::string sizeText(std::uintmax_t bytes) {
@@ -56,22 +53,6 @@ std::vector<std::string> openedEndings() {
   return endings;
 }
 
-/// Whether a folder is opened like a file.
-bool isOpenedFolder(const fs::path& folder) {
-  return hasEnding(folder, {".zarr"});
-}
-
-bool containsIgnoringCase(const std::string& text, const std::string& part) {
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
-  return std::ranges::search(text, part, same).begin() != text.end() || part.empty();
-}
-
-bool startsIgnoringCase(const std::string& text, const std::string& part) {
-  return part.size() <= text.size() && containsIgnoringCase(text.substr(0, part.size()), part);
-}
-
 /// As much of a text as fits into a width, with "..." for what does not.
 std::string shortened(const std::string& text, float width) {
   if (ImGui::CalcTextSize(text.c_str()).x <= width) return text;
@@ -79,16 +60,6 @@ std::string shortened(const std::string& text, float width) {
   const auto isWithinCharacter = [&] { return (static_cast<unsigned char>(text[length]) & 0xc0u) == 0x80u; };  // of UTF-8
   while (length > 0 && (isWithinCharacter() || ImGui::CalcTextSize((text.substr(0, length) + "...").c_str()).x > width)) --length;
   return text.substr(0, length) + "...";
-}
-
-/// How many files of a folder are the slices of volumes, which open by its name: TIFF and DICOM, of which the latter often have no ending.
-std::size_t slicesAmong(const std::vector<fs::path>& files) {
-  constexpr std::ptrdiff_t kTried = 3;  // of files whose endings say nothing
-  const auto slices = std::ranges::count_if(files, [](const fs::path& file) { return hasEnding(file, {".tif", ".tiff", ".dcm", ".ima"}); });
-  if (slices > 0) return std::size_t(slices);
-  std::vector<fs::path> unknown;
-  std::ranges::copy_if(files, std::back_inserter(unknown), [](const fs::path& file) { return !hasScanEnding(file); });
-  return std::ranges::any_of(unknown.begin(), unknown.begin() + std::min(kTried, std::ssize(unknown)), isScanFile) ? unknown.size() : 0;
 }
 
 }  // namespace
@@ -118,90 +89,20 @@ void FileDialog::begin(const char* title, std::vector<std::string> endings, std:
   thumbnails_.clear();
   go(folder_);
   // At first the folder of the last file, if the working folder has none.
-  const bool isFirst = !std::exchange(hasBegun_, true),
-             hasFile = std::ranges::any_of(entries_, [](const Entry&entry) { return !entry.isFolder(); });
+  const bool isFirst = !std::exchange(hasBegun_, true);
   const auto last = std::ranges::find_if(store_.recent(), [](const std::string& file) { return !proceduralName(file); });
   std::error_code unknown;
-  if (isFirst && !hasFile && last != store_.recent().end() && fs::is_directory(fs::path(*last).parent_path(), unknown))
+  if (isFirst && !list_.hasFiles() && last != store_.recent().end() && fs::is_directory(fs::path(*last).parent_path(), unknown))
     go(fs::path(*last).parent_path());
 }
 
 void FileDialog::go(fs::path folder) {
-  problem_.clear();
   typed_.clear();
   showsRecent_ = false;
-  std::vector<Entry> folders;
-  std::vector<fs::directory_entry> files;
-  std::vector<fs::path> all;
-  std::size_t hidden = 0;
-  std::error_code problem;
-  for (fs::directory_iterator at(folder, problem), end; !problem && at != end && files.size() < kMaxFiles; at.increment(problem)) {
-    std::error_code unknown;
-    if (at->path().filename().string().starts_with('.')) continue;
-    if (at->is_directory(unknown) && !isOpenedFolder(at->path()))
-      folders.push_back({.name = at->path().filename().string() + "/", .shown = at->path().filename().string() + "/"});
-    else if (all_ || hasEnding(at->path(), endings_))
-      files.push_back(*at);
-    else
-      ++hidden;
-    if (at->is_regular_file(unknown)) all.push_back(at->path());
-  }
-  if (problem) {
-    problem_ = fmt::format("cannot read the folder '{}': {}", folder.string(), problem.message());
-    return;
-  }
+  problem_ = list_.read(folder, all_ ? std::vector<std::string>() : endings_, saves_);
+  if (!problem_.empty()) return;
   // Without the slash that the name of a chosen folder ends in.
   folder_ = folder.has_filename() || !folder.has_relative_path() ? std::move(folder) : folder.parent_path();
-  hidden_ = hidden;
-  entries_ = std::move(folders);
-  slices_ = saves_ ? 0 : slicesAmong(all);
-  if (slices_ > 1) entries_.push_back({.name = kThisFolder, .shown = fmt::format("This folder, as a volume of {} slices", slices_)});
-  std::ranges::sort(files, {}, [](const fs::directory_entry& file) { return file.path(); });
-  addFiles(files);
-  sort();
-}
-
-/// The folder itself first, then folders, which have names alone, then files.
-void FileDialog::sort() {
-  const auto rank = [](const Entry& entry) { return entry.name == kThisFolder ? 0 : entry.isFolder() ? 1 : 2; };
-  const auto isBefore = [&](const Entry& a, const Entry& b) {
-    if (rank(a) != rank(b)) return rank(a) < rank(b);
-    const Entry &first = descends_ ? b : a, &second = descends_ ? a : b;
-    if (!a.isFolder() && sortedBy_ == Column::Size && a.bytes != b.bytes) return first.bytes < second.bytes;
-    if (!a.isFolder() && sortedBy_ == Column::Changed && a.time != b.time) return first.time < second.time;
-    return first.name < second.name;
-  };
-  std::ranges::stable_sort(entries_, isBefore);
-}
-
-/// While one types a name to open, what does not contain it is left out.
-bool FileDialog::isListed(const Entry& entry) const {
-  return saves_ || containsIgnoringCase(entry.shown, typed_);
-}
-
-/// The name of the listed entry that is `step` after the one of this name, or the first or last.
-std::string FileDialog::next(const std::string& name, int step) const {
-  std::vector<const Entry*> listed;
-  for (const Entry& entry : entries_)
-    if (isListed(entry)) listed.push_back(&entry);
-  if (listed.empty()) return name;
-  const auto current = std::ranges::find(listed, name, &Entry::name);
-  const auto count = int(listed.size());
-  const int number = current == listed.end() ? (step > 0 ? 0 : count - 1) : std::clamp(int(current - listed.begin()) + step, 0, count - 1);
-  return listed[std::size_t(number)]->name;
-}
-
-/// What all entries that begin with the name have in common.
-std::string FileDialog::completed(const std::string& name) const {
-  std::optional<std::string> common;
-  for (const Entry& entry : entries_) {
-    if (!startsIgnoringCase(entry.name, name)) continue;
-    if (!common) common = entry.name;
-    std::size_t same = 0;
-    while (same < common->size() && same < entry.name.size() && (*common)[same] == entry.name[same]) ++same;
-    common->resize(same);
-  }
-  return common && common->size() > name.size() ? *common : name;
 }
 
 /// Tab completes the name, arrows go through the list.
@@ -213,31 +114,12 @@ int FileDialog::followKeys(ImGuiInputTextCallbackData* data) {
     return 0;
   }
   const bool completes = data->EventFlag == ImGuiInputTextFlags_CallbackCompletion;
-  const std::string name = completes ? dialog.completed(text) : dialog.next(text, data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
+  const std::string name =
+      completes ? dialog.list_.completed(text) : dialog.list_.next(dialog.typed_, text, data->EventKey == ImGuiKey_UpArrow ? -1 : 1);
   if (completes) dialog.typed_ = name;
   data->DeleteChars(0, data->BufTextLen);
   data->InsertChars(0, name.c_str());
   return 0;
-}
-
-/// The frames of a sequence are one entry beside the files themselves.
-void FileDialog::addFiles(const std::vector<fs::directory_entry>& files) {
-  std::set<std::string> framesOfSome;
-  for (const fs::directory_entry& file : files) {
-    const std::string name = file.path().filename().string(), stem = stemOf(file.path());
-    std::error_code unknown;
-    const std::uintmax_t bytes = file.is_regular_file(unknown) ? file.file_size(unknown) : 0;
-    const fs::file_time_type time = file.last_write_time(unknown);
-    const bool isNumbered = !saves_ && mayBeFrame(file.path()) && !stem.empty() && std::isdigit(stem.back()) != 0;
-    if (isNumbered && !framesOfSome.contains(file.path().string()))
-      if (const std::optional<Sequence> sequence = sequenceAround(file.path().string())) {
-        framesOfSome.insert(sequence->files.begin(), sequence->files.end());
-        const std::string pattern = fs::path(sequence->pattern).filename().string();
-        entries_.push_back(
-            {.name = pattern, .shown = fmt::format("{}  ({} frames)", pattern, sequence->files.size()), .time = time});
-      }
-    entries_.push_back({.name = name, .shown = name, .bytes = bytes, .time = time});
-  }
 }
 
 void FileDialog::confirm(const std::string& typed) {
@@ -248,9 +130,9 @@ void FileDialog::confirm(const std::string& typed) {
     chosen_(meant);
     return ImGui::CloseCurrentPopup();
   }
-  const bool isThisFolder = meant == kThisFolder && slices_ > 1;
+  const bool isThisFolder = meant == FolderList::kThisFolder && list_.isVolume();
   const fs::path path = isThisFolder ? folder_ : (folder_ / meant).lexically_normal();
-  if (fs::is_directory(path, unknown) && !isThisFolder && (saves_ || !isOpenedFolder(path))) {
+  if (fs::is_directory(path, unknown) && !isThisFolder && (saves_ || !FolderList::isOpenedLikeAFile(path))) {
     go(path);
     if (problem_.empty() && !saves_) name_.clear();
     focus_ = true;
@@ -293,14 +175,12 @@ void FileDialog::drawList() {
   ImGui::TableSetupColumn("Changed");
   ImGui::TableHeadersRow();
   if (ImGuiTableSortSpecs* const specs = ImGui::TableGetSortSpecs(); specs != nullptr && specs->SpecsDirty && specs->SpecsCount > 0) {
-    sortedBy_ = Column(specs->Specs[0].ColumnIndex);
-    descends_ = specs->Specs[0].SortDirection == ImGuiSortDirection_Descending;
+    list_.sortBy(FolderList::Column(specs->Specs[0].ColumnIndex), specs->Specs[0].SortDirection == ImGuiSortDirection_Descending);
     specs->SpecsDirty = false;
-    sort();
   }
   std::string chosen;
-  for (const Entry& entry : entries_) {
-    if (!isListed(entry)) continue;
+  for (const FolderList::Entry& entry : list_.entries()) {
+    if (!entry.contains(typed_)) continue;
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
     constexpr ImGuiSelectableFlags kRow = ImGuiSelectableFlags_SpanAllColumns;
@@ -321,10 +201,10 @@ void FileDialog::drawList() {
     ImGui::TableNextColumn();
     if (!entry.isFolder()) ImGui::TextDisabled("%s", timeText(entry.time).c_str());
   }
-  if (entries_.empty() && hidden_ > 0) {
+  if (list_.entries().empty() && list_.hidden() > 0) {
     ImGui::TableNextRow();
     ImGui::TableNextColumn();
-    ImGui::TextDisabled("No file of a known kind; \"All files\" shows the other %zu.", hidden_);
+    ImGui::TextDisabled("No file of a known kind; \"All files\" shows the other %zu.", list_.hidden());
   }
   followed_ = name_;
   ImGui::EndTable();

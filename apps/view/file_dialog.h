@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "apps/view/folder_list.h"
 #include "apps/view/session_store.h"
 #include "engine/vulkan/texture.h"
 
@@ -32,29 +33,14 @@ class FileDialog {
   bool isOpen() const { return isOpen_; }
 
  private:
-  struct Entry {
-    std::string name;   ///< a folder's ends in "/"
-    std::string shown;  ///< with the number of frames of a sequence
-    std::uintmax_t bytes = 0;
-    std::filesystem::file_time_type time;
-    bool isFolder() const { return name.ends_with('/'); }
-  };
-
-  enum class Column { Name, Size, Changed };
-
   void begin(const char* title, std::vector<std::string> endings, std::function<void(const std::string&)> chosen);
   void go(std::filesystem::path folder);
-  void addFiles(const std::vector<std::filesystem::directory_entry>& files);
-  void sort();
-  bool isListed(const Entry& entry) const;
   void drawPlaces();
   void drawList();
   void drawRecent();
   bool drawTile(const std::string& file, const std::string& label);
   void drawName();
   static int followKeys(ImGuiInputTextCallbackData* data);
-  std::string next(const std::string& name, int step) const;
-  std::string completed(const std::string& name) const;
   void confirm(const std::string& name);
   const Texture* thumbnail(const std::string& file);
 
@@ -62,16 +48,13 @@ class FileDialog {
   const SessionStore& store_;
   const std::filesystem::path start_;  ///< the working folder
   std::filesystem::path folder_;
-  std::vector<Entry> entries_;
-  std::size_t hidden_ = 0;  ///< files of the folder of kinds that are not listed
-  std::size_t slices_ = 0;  ///< files of the folder that are slices of volumes
+  FolderList list_;         ///< of folder_
   std::string clicked_;     ///< the entry that was clicked last, at `clickedAt_` seconds
   double clickedAt_ = 0.0;
   std::string title_, name_, problem_;
   std::string followed_;  ///< the name whose entry was scrolled to
   std::string typed_;     ///< the part of a name to open that was typed: entries without it are not listed
-  Column sortedBy_ = Column::Name;
-  bool descends_ = false, hasBegun_ = false;
+  bool hasBegun_ = false;
   std::vector<std::string> endings_;
   std::function<void(const std::string&)> chosen_;
   bool saves_ = false, asked_ = false, focus_ = false, showsRecent_ = false, all_ = false, isOpen_ = false;

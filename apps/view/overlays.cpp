@@ -16,7 +16,12 @@ namespace freevoxels {
 namespace {
 
 constexpr std::array kAxisColors{IM_COL32(224, 96, 88, 255), IM_COL32(124, 196, 96, 255), IM_COL32(92, 148, 240, 255)};
-constexpr ImU32 kInk = IM_COL32(235, 235, 240, 255), kShade = IM_COL32(0, 0, 0, 150), kBox = IM_COL32(200, 205, 215, 110);
+/// Colours of lines and letters, of what is behind them, and of the box.
+struct Ink {
+  ImU32 line, shade, box;
+};
+constexpr Ink kLightInk{IM_COL32(235, 235, 240, 255), IM_COL32(0, 0, 0, 150), IM_COL32(200, 205, 215, 110)};
+constexpr Ink kDarkInk{IM_COL32(24, 24, 28, 255), IM_COL32(255, 255, 255, 150), IM_COL32(60, 62, 68, 150)};
 constexpr ImU32 kPlaneColor = IM_COL32(240, 200, 80, 255);
 constexpr float kHandle = 9.0f;     // reach of the mouse, in units
 constexpr float kMinSlope = 0.15f;  // sine of the angle between a plane's normal and the view from which its handle follows the normal
@@ -25,10 +30,16 @@ float unit() {
   return ImGui::GetFontSize() / 15.0f;
 }
 
+/// Legible on the background.
+const Ink& inkOn(const std::optional<glm::dvec3>& background) {
+  constexpr double kBright = 0.2;  // linear luminance
+  return background && glm::dot(*background, glm::dvec3(0.2126, 0.7152, 0.0722)) > kBright ? kDarkInk : kLightInk;
+}
+
 /// Legible on any image.
-void drawText(ImDrawList& list, ImVec2 place, ImU32 color, const std::string& text) {
-  list.AddText({place.x + 1.0f, place.y + 1.0f}, kShade, text.c_str());
-  list.AddText(place, color, text.c_str());
+void drawText(ImDrawList& list, ImVec2 place, const Ink& ink, const std::string& text) {
+  list.AddText({place.x + 1.0f, place.y + 1.0f}, ink.shade, text.c_str());
+  list.AddText(place, ink.line, text.c_str());
 }
 
 /// An end of the axes in the corner.
@@ -51,7 +62,7 @@ std::array<AxisEnd, 6> axisEnds(const Camera& camera, const ImageFrame& frame, I
   return ends;
 }
 
-void drawAxes(const Camera& camera, const ImageFrame& frame) {
+void drawAxes(const Camera& camera, const ImageFrame& frame, const Ink& ink) {
   constexpr std::array kNames{"x", "y", "z"};
   ImVec2 centre;
   const auto ends = axisEnds(camera, frame, centre);
@@ -64,7 +75,7 @@ void drawAxes(const Camera& camera, const ImageFrame& frame) {
     if (positive) list.AddLine(centre, end.place, color, 2.0f * unit());
     list.AddCircleFilled(end.place, radius, positive ? color : IM_COL32(40, 42, 48, 200));
     if (!positive) list.AddCircle(end.place, radius, (color & 0x00FFFFFF) | 0xB0000000);
-    if (hovered == end.axis) list.AddCircle(end.place, radius + 1.5f, kInk, 0, 2.0f);
+    if (hovered == end.axis) list.AddCircle(end.place, radius + 1.5f, ink.line, 0, 2.0f);
     if (!positive) continue;
     const char* const name = kNames[std::size_t(end.axis / 2)];
     const ImVec2 text = ImGui::CalcTextSize(name);
@@ -86,29 +97,29 @@ void drawPlane(const Volume& volume, const ClipPlane& plane, const Camera& camer
 }
 
 /// The volume's box with the world coordinates of two opposite corners.
-void drawBox(const Volume& volume, const Camera& camera, const ImageFrame& frame) {
+void drawBox(const Volume& volume, const Camera& camera, const ImageFrame& frame, const Ink& ink) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const auto corner = [&](int i) { return boxCorner(volume, i); };
   for (int i = 0; i < 8; ++i)
     for (int axis = 0; axis < 3; ++axis) {
       if ((i >> axis & 1) != 0) continue;
       const auto from = frame.place(camera, corner(i)), to = frame.place(camera, corner(i | 1 << axis));
-      if (from && to) list.AddLine(*from, *to, i == 0 ? kAxisColors[std::size_t(axis)] : kBox, i == 0 ? 2.0f : 1.0f);
+      if (from && to) list.AddLine(*from, *to, i == 0 ? kAxisColors[std::size_t(axis)] : ink.box, i == 0 ? 2.0f : 1.0f);
     }
   for (const int i : {0, 7})
     if (const auto place = frame.place(camera, corner(i))) {
       const glm::dvec3 world = corner(i);
-      drawText(list, {place->x + 5.0f, place->y + 2.0f}, kInk, fmt::format("{:.3g}, {:.3g}, {:.3g}", world.x, world.y, world.z));
+      drawText(list, {place->x + 5.0f, place->y + 2.0f}, ink, fmt::format("{:.3g}, {:.3g}, {:.3g}", world.x, world.y, world.z));
     }
 }
 
-void drawScaleBar(const Camera& camera, const ImageFrame& frame, const std::string& lengthUnit) {
+void drawScaleBar(const Camera& camera, const ImageFrame& frame, const std::string& lengthUnit, const Ink& ink) {
   const double pixel = pixelLength(camera, double(frame.size().y));
   const double length = roundLength(140.0 * double(unit()) * pixel);
   const auto width = float(length / pixel);
   const ImVec2 end(frame.high.x - 18.0f * unit(), frame.high.y - 18.0f * unit());
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  for (const auto& [shift, color] : {std::pair(1.0f, kShade), std::pair(0.0f, kInk)}) {
+  for (const auto& [shift, color] : {std::pair(1.0f, ink.shade), std::pair(0.0f, ink.line)}) {
     const ImVec2 right(end.x + shift, end.y + shift), left(right.x - width, right.y);
     list.AddLine(left, right, color, 2.0f);
     for (const ImVec2 at : {left, right}) list.AddLine({at.x, at.y - 5.0f}, {at.x, at.y + 1.0f}, color, 2.0f);
@@ -116,11 +127,11 @@ void drawScaleBar(const Camera& camera, const ImageFrame& frame, const std::stri
   const std::string text =
       !lengthUnit.empty() ? lengthText(length, lengthUnit) : fmt::format("{:g} {}", length, length == 1.0 ? "unit" : "units");
   const float textWidth = ImGui::CalcTextSize(text.c_str()).x;
-  drawText(list, {end.x - 0.5f * (width + textWidth), end.y - 1.5f * ImGui::GetFontSize()}, kInk, text);
+  drawText(list, {end.x - 0.5f * (width + textWidth), end.y - 1.5f * ImGui::GetFontSize()}, ink, text);
 }
 
 /// The colours of the transfer function with the values of its ends and middle.
-void drawColorBar(const ViewState& state, const ImageFrame& frame) {
+void drawColorBar(const ViewState& state, const ImageFrame& frame, const Ink& ink) {
   const auto& function = state.latest->scene.classification.transferFunction;
   if (!function) return;
   const float height = std::min(220.0f * unit(), 0.4f * frame.size().y), width = 12.0f * unit();
@@ -134,11 +145,11 @@ void drawColorBar(const ViewState& state, const ImageFrame& frame) {
   for (float y = 0.0f; y < height; y += 1.0f)
     list.AddRectFilled({low.x, low.y + y}, {low.x + width, low.y + y + 1.0f},
                        shownColor(model.colorAt(1.0 - double(y / height)), 1.0f));
-  list.AddRect({low.x - 1.0f, low.y - 1.0f}, {low.x + width + 1.0f, low.y + height + 1.0f}, kShade);
+  list.AddRect({low.x - 1.0f, low.y - 1.0f}, {low.x + width + 1.0f, low.y + height + 1.0f}, ink.shade);
   for (const double x : {0.0, 0.5, 1.0}) {
     const std::string text = fmt::format("{:.4g}", least + x * span);
     const float y = low.y + float(1.0 - x) * height;
-    drawText(list, {low.x - 6.0f - ImGui::CalcTextSize(text.c_str()).x, y - 0.5f * ImGui::GetFontSize()}, kInk, text);
+    drawText(list, {low.x - 6.0f - ImGui::CalcTextSize(text.c_str()).x, y - 0.5f * ImGui::GetFontSize()}, ink, text);
   }
 }
 
@@ -289,7 +300,7 @@ void drawLights(const ViewState& state, const ImageFrame& frame) {
     if (!place) continue;
     const glm::dvec3& color = lights[i].light.color;
     list.AddCircleFilled(*place, 5.0f * unit(), shownColor(color / std::max({color.r, color.g, color.b, 1e-6}), 1.0f));
-    list.AddCircle(*place, 5.0f * unit(), i == hovered ? kInk : kShade, 0, 2.0f);
+    list.AddCircle(*place, 5.0f * unit(), i == hovered ? kLightInk.line : kLightInk.shade, 0, 2.0f);
     constexpr int kRays = 8;
     for (int ray = 0; ray < kRays; ++ray) {
       const float angle = 2.0f * std::numbers::pi_v<float> * float(ray) / kRays, x = std::cos(angle), y = std::sin(angle);
@@ -302,21 +313,22 @@ void drawLights(const ViewState& state, const ImageFrame& frame) {
 void drawOverlays(const ViewState& state, const ImageFrame& frame) {
   // What is over the image is seen by the camera of the image, which a newer one may have replaced.
   const Camera& camera = state.latest ? state.latest->scene.camera : *state.camera;
+  const Ink& ink = inkOn(state.scene.output.background);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect(frame.low, frame.high, true);
   const bool isVolume = state.latest && state.diagnosis.shown == Shown::Image;
   const ClipHandles clip(state, frame);
-  if (state.latest && (state.overlays.box || state.scene.input.clipBox)) drawBox(*state.latest->scene.volume, camera, frame);
+  if (state.latest && (state.overlays.box || state.scene.input.clipBox)) drawBox(*state.latest->scene.volume, camera, frame, ink);
   if (state.latest && state.scene.input.clipPlane) drawPlane(*state.latest->scene.volume, *state.scene.input.clipPlane, camera, frame);
-  if (state.overlays.colorBar && isVolume) drawColorBar(state, frame);
-  if (state.overlays.scaleBar) drawScaleBar(camera, frame, state.latest ? state.latest->scene.volume->lengthUnit : "");
-  if (state.overlays.axes) drawAxes(camera, frame);
+  if (state.overlays.colorBar && isVolume) drawColorBar(state, frame, ink);
+  if (state.overlays.scaleBar) drawScaleBar(camera, frame, state.latest ? state.latest->scene.volume->lengthUnit : "", ink);
+  if (state.overlays.axes) drawAxes(camera, frame, ink);
   if (isVolume && !state.scene.lighting.unlit) drawLights(state, frame);
   const ClipHandles::Handle* const hovered = clip.hovered();
   for (const ClipHandles::Handle& handle : clip.handles) {
     const ImU32 color = handle.side == ClipHandles::kPlane ? kPlaneColor : kAxisColors[std::size_t(handle.side / 2)];
     list.AddCircleFilled(handle.place, 7.0f * unit(), color);
-    list.AddCircle(handle.place, 7.0f * unit(), &handle == hovered ? kInk : kShade, 0, 2.0f);
+    list.AddCircle(handle.place, 7.0f * unit(), &handle == hovered ? kLightInk.line : kLightInk.shade, 0, 2.0f);
   }
   list.PopClipRect();
 }

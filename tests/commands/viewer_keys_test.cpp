@@ -1,5 +1,7 @@
 // freevoxels-view by the keyboard: files that are found by typing, menus, and files that are not read to their end.
 
+#include <cstdlib>
+
 #include "tests/commands/viewer_fixture.h"
 
 namespace freevoxels::test {
@@ -30,16 +32,32 @@ TEST_F(Viewer, MenusAndChoicesAreGoneThroughWithArrowsEnterAndEscape) {
   const nlohmann::json first = sceneOf(*session, "first.json");
   // The menu View, whose first entry is chosen at first: the second one is the other projection.
   session->hands("mousemove 104 10 click 1");
-  session->hands("sleep 0.2 key Down sleep 0.1 key Return sleep 0.1 mousemove 700 300");
+  session->hands("sleep 0.5 key Down sleep 0.3 key Return sleep 0.3 mousemove 700 300");
   session->hands("sleep 0.2");
   EXPECT_TRUE(sceneOf(*session, "other.json").at("camera").contains("orthographic"));
   session->hands("mousemove 104 10 click 1");
-  session->hands("sleep 0.2 key Escape mousemove 700 300");
+  session->hands("sleep 0.5 key Escape sleep 0.3 mousemove 700 300");
   session->hands("sleep 0.2 key o");  // a shortcut again, as no menu is open
   session->hands("sleep 0.2");
   EXPECT_FALSE(sceneOf(*session, "again.json").at("camera").contains("orthographic"));
   session->hands("mousemove 104 10 click 1");
   expectQuietEnd(*session);  // by Ctrl+Q, though the menu is open
+}
+
+TEST_F(Viewer, LettersAreThoseOfTheKeyboardsLayout) {
+  if (!installedProgram("setxkbmap")) GTEST_SKIP() << "setxkbmap is not installed: the keyboard has one layout here";
+  for (const char* const layout : {"us", "de", "fr"}) {  // Z is elsewhere on a German keyboard, A and Q on a French one
+    ASSERT_EQ(std::system(fmt::format("setxkbmap {}", layout).c_str()), 0);
+    const auto session = use("procedural:cloud --resolution 16");
+    session->hands("windowsize @ 600 200");
+    sceneOf(*session, fmt::format("{}_first.json", layout));
+    session->hands("mousemove 500 100 key o");
+    EXPECT_TRUE(sceneOf(*session, fmt::format("{}_other.json", layout)).at("camera").contains("orthographic")) << layout;
+    session->hands("key ctrl+a key ctrl+shift+z");  // the former is no shortcut, and the latter goes back to the camera before
+    EXPECT_FALSE(sceneOf(*session, fmt::format("{}_back.json", layout)).at("camera").contains("orthographic")) << layout;
+    expectQuietEnd(*session);
+  }
+  EXPECT_EQ(std::system("setxkbmap us"), 0);
 }
 
 TEST_F(Viewer, ReadingIsGivenUpByEscape) {
@@ -49,7 +67,8 @@ TEST_F(Viewer, ReadingIsGivenUpByEscape) {
   // Far more voxels than are made until the key is pressed.
   writeBytes(folder / "large.json", R"({"input": {"volume": "procedural:cloud", "resolution": 900}})");
   session->open("large.json");
-  session->hands("mousemove 700 300 sleep 0.5 key Escape sleep 0.5 key ctrl+z");  // back to the small one
+  for (int i = 0; i < 4; ++i) session->hands("mousemove 700 300 sleep 0.5 key Escape");  // the first may come before it is read
+  session->hands("sleep 0.5 key ctrl+z");                                                // back to the small one
   session->save('s', "b.png");
   EXPECT_NE(readBytes(folder / "said.txt").find("was given up"), std::string::npos);
   EXPECT_EQ(session->quit().exitCode, 0);

@@ -98,6 +98,24 @@ TEST_F(ImageMakerTest, ImagesOfAMovementResembleTheWholeOne) {
   EXPECT_GT(psnr(downloadImage(device(), *maker_.make(request, {}).image), whole), 35.0);
 }
 
+TEST_F(ImageMakerTest, ImagesOfAnEditedFunctionResembleTheWholeOne) {
+  ImageRequest request = litCloud();
+  request.scene.input = {.volume = "procedural:head", .grid = std::nullopt, .resolution = glm::ivec3(64)};
+  request.scene.camera.size = {96, 96};
+  request.scene.classification.transferFunction = "skin-and-bone";
+  const DrawnImage before = maker_.make(request, {});
+  request.scene.camera.look(before.scene.camera);
+  request.scene.classification.window = ValueWindow{.low = 0.15, .high = 0.9};
+  request.purpose = Purpose::Classify;
+  const DrawnImage draft = maker_.make(request, {});
+  EXPECT_EQ(draft.scene.volume->dimensions, before.scene.volume->dimensions) << "of all voxels";
+  request.purpose = Purpose::Whole;
+  const Image whole = downloadImage(device(), *maker_.make(request, {}).image);
+  const double ofDraft = psnr(downloadImage(device(), *draft.image), whole), ofBefore = psnr(downloadImage(device(), *before.image), whole);
+  EXPECT_GT(ofDraft, 30.0);
+  EXPECT_GT(ofDraft, ofBefore + 6.0) << "the edit is seen";
+}
+
 TEST_F(ImageMakerTest, AnotherClassificationMakesAnotherOccupancy) {
   ImageRequest request = litCloud();
   maker_.make(request, {});
