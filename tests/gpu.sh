@@ -20,7 +20,7 @@ if [ "$any" = no ] && ! "$bin/freevoxels" devices --json | grep -E '"type": "(di
 fi
 
 echo "== the same image five times ($(date +%T))"
-view=(--azimuth 30 --elevation 20 --size 1024 --float --quiet)
+view=(--orbit 30,20 --size 1024 --float --quiet)
 while read -r name arguments; do
   # shellcheck disable=SC2086
   kinds="$(for _ in 1 2 3 4 5; do

@@ -48,6 +48,13 @@ Field fieldOf(const Volume& volume, const Classification& classification) {
   return field;
 }
 
+// Compiled for processors with AVX2 as well, where there are such.
+#ifdef __x86_64__
+#define FREEVOXELS_FOR_THIS_CPU __attribute__((target_clones("arch=haswell", "default")))
+#else
+#define FREEVOXELS_FOR_THIS_CPU
+#endif
+
 using Floats = float __attribute__((vector_size(kLanes * sizeof(float))));
 using Ints = std::int32_t __attribute__((vector_size(kLanes * sizeof(std::int32_t))));
 
@@ -60,7 +67,7 @@ struct Packet {
 };
 
 /// Marches through the slices from `first` to `last`.
-__attribute__((target_clones("arch=haswell", "default"))) void march(const Field& field, int axis, int first, int last, Packet& rays) {
+FREEVOXELS_FOR_THIS_CPU void march(const Field& field, int axis, int first, int last, Packet& rays) {
   const int sideA = axis == 0 ? 1 : 0, sideB = axis == 2 ? 1 : 2, step = first <= last ? 1 : -1;
   const int strideA = field.stride(sideA), strideB = field.stride(sideB), strideS = field.stride(axis);
   const Floats zero = Floats{}, mostA = zero + float(field.size[sideA] - 2), mostB = zero + float(field.size[sideB] - 2);
