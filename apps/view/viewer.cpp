@@ -201,39 +201,16 @@ bool Viewer::isOpening() const {
   return !state_.latest || state_.latest->request.scene.input.volume != openedVolume_;
 }
 
-/// Dims the older image, and says why there is no newer one, with what else can be opened.
+/// Says over the older image why there is no newer one, with what else can be opened.
 void Viewer::drawOpening() {
-  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
-  ImDrawList& list = *ImGui::GetWindowDrawList();
-  if (state_.latest) list.AddRectFilled(low, high, IM_COL32(24, 24, 26, 190));
   std::string text = state_.problem;
   if (const auto activity = director_.activity(); activity && text.empty())
     text = director_.reads() ? fmt::format("{}  {:.0f} %\nEscape gives it up", activity->first, 100.0 * activity->second) : activity->first;
-  const float wrap = 0.8f * (high.x - low.x);
-  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
-  const ImVec2 place(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y));
-  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), place, IM_COL32(235, 235, 238, 255), text.c_str(), nullptr, wrap);
-  if (!state_.problem.empty() && !options_.screenshot) drawOtherFiles({0.5f * (low.x + high.x), place.y + size.y});
-}
-
-/// Buttons around a place, for a window that shows nothing.
-void Viewer::drawOtherFiles(ImVec2 middle) {
-  constexpr std::size_t kMost = 4;
-  constexpr const char* kSample = "procedural:cloud";
-  const float width = 20.0f * ImGui::GetFontSize();
-  ImGui::SetCursorScreenPos({middle.x - 0.5f * width, middle.y + ImGui::GetFrameHeight()});
-  ImGui::BeginChild("other files", {width, float(kMost + 2) * ImGui::GetFrameHeightWithSpacing()});
-  if (ImGui::Button("Open... (Ctrl+O)", {-1.0f, 0.0f})) chosen_ = Action::Open;
-  std::vector<std::string> files = store_.recent();
-  std::erase(files, openedName(state_));
-  files.resize(std::min(files.size(), kMost));
-  if (std::ranges::count(files, kSample) == 0) files.emplace_back(kSample);
-  for (const std::string& file : files) {
-    const std::string label = proceduralName(file) ? file : std::filesystem::path(file).filename().string();
-    if (ImGui::Button(fmt::format("{}###{}", label, file).c_str(), {-1.0f, 0.0f})) wanted_ = file;
-    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", file.c_str());
-  }
-  ImGui::EndChild();
+  const ImVec2 below = drawOverImage(text, state_.latest != nullptr);
+  if (state_.problem.empty() || options_.screenshot) return;
+  const OtherFile other = drawOtherFiles(below, store_.recent(), openedName(state_));
+  if (other.opensDialog) chosen_ = Action::Open;
+  wanted_ = other.file;
 }
 
 void Viewer::drawImage(float left, float width, float top, float height) {

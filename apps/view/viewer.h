@@ -57,7 +57,6 @@ class Viewer {
   void rememberOpened();
   bool isOpening() const;
   void drawOpening();
-  void drawOtherFiles(ImVec2 middle);
   void storeLastScene();
   double patience() const;
   void writeScreenshot() const;

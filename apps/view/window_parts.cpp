@@ -3,6 +3,9 @@
 #include <fmt/format.h>
 
 #include <algorithm>
+#include <filesystem>
+
+#include "engine/description/scene_description.h"
 
 namespace freevoxels {
 
@@ -74,6 +77,37 @@ void drawTurnHint() {
   list.AddRectFilled({place.x - size.y, place.y - 0.5f * size.y}, {place.x + size.x + size.y, place.y + 1.5f * size.y},
                      IM_COL32(20, 22, 26, 215), size.y);
   list.AddText(place, IM_COL32(235, 235, 240, 255), text);
+}
+
+ImVec2 drawOverImage(const std::string& text, bool hasImage) {
+  const ImVec2 low = ImGui::GetItemRectMin(), high = ImGui::GetItemRectMax();
+  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (hasImage) list.AddRectFilled(low, high, IM_COL32(24, 24, 26, 190));
+  const float wrap = 0.8f * (high.x - low.x);
+  const ImVec2 size = ImGui::CalcTextSize(text.c_str(), nullptr, false, wrap);
+  const ImVec2 place(0.5f * (low.x + high.x - size.x), 0.5f * (low.y + high.y - size.y));
+  list.AddText(ImGui::GetFont(), ImGui::GetFontSize(), place, IM_COL32(235, 235, 238, 255), text.c_str(), nullptr, wrap);
+  return {0.5f * (low.x + high.x), place.y + size.y};
+}
+
+OtherFile drawOtherFiles(ImVec2 middle, std::vector<std::string> recent, const std::string& failed) {
+  constexpr std::size_t kMost = 4;
+  constexpr const char* kSample = "procedural:cloud";
+  std::erase(recent, failed);
+  recent.resize(std::min(recent.size(), kMost));
+  if (std::ranges::count(recent, kSample) == 0) recent.emplace_back(kSample);
+  OtherFile chosen;
+  const float width = 20.0f * ImGui::GetFontSize();
+  ImGui::SetCursorScreenPos({middle.x - 0.5f * width, middle.y + ImGui::GetFrameHeight()});
+  ImGui::BeginChild("other files", {width, float(kMost + 2) * ImGui::GetFrameHeightWithSpacing()});
+  chosen.opensDialog = ImGui::Button("Open... (Ctrl+O)", {-1.0f, 0.0f});
+  for (const std::string& file : recent) {
+    const std::string label = proceduralName(file) ? file : std::filesystem::path(file).filename().string();
+    if (ImGui::Button(fmt::format("{}###{}", label, file).c_str(), {-1.0f, 0.0f})) chosen.file = file;
+    if (ImGui::IsItemHovered()) ImGui::SetTooltip("%s", file.c_str());
+  }
+  ImGui::EndChild();
+  return chosen;
 }
 
 }  // namespace freevoxels

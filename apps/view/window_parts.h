@@ -6,6 +6,7 @@
 #include <optional>
 #include <string>
 #include <utility>
+#include <vector>
 
 #include "apps/view/view_state.h"
 
@@ -33,5 +34,18 @@ void drawStatusBar(const ViewState& state, const Activity& activity, bool cancel
 
 /// A line in the current part on how to turn, for those who have not turned yet.
 void drawTurnHint();
+
+/// Writes a text into the middle of the last widget, which is the image, and dims the image if there is one. Returns the place below the
+/// text's middle.
+ImVec2 drawOverImage(const std::string& text, bool hasImage);
+
+/// What is chosen to be opened.
+struct OtherFile {
+  bool opensDialog = false;
+  std::optional<std::string> file;
+};
+/// Buttons below a place for a window that shows nothing: for the dialog, for the last of the files `recent` but `failed`, and for a
+/// sample.
+OtherFile drawOtherFiles(ImVec2 middle, std::vector<std::string> recent, const std::string& failed);
 
 }  // namespace freevoxels

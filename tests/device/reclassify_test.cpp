@@ -57,6 +57,17 @@ class ReclassifyTest : public DeviceTest {
     sorted.lod = 0.0f;
     return {plain, lit, coarse, projected, perVoxel, fog, splats, sorted};
   }
+  /// Begins a frame, and gives it up when its progress is reported for the time after `calls`.
+  static void renderGivenUp(Renderer& renderer, const Camera& view, const FrameSettings& settings, int calls) {
+    struct GivenUp {};
+    int left = calls;
+    try {
+      renderer.render(view, settings, [&](std::string_view, double) {
+        if (left-- == 0) throw GivenUp();
+      });
+    } catch (const GivenUp&) {
+    }
+  }
   static Camera camera(const Volume& volume, double azimuth) { return framingCamera(volume, azimuth, 20.0, 1.2, {}); }
 };
 
@@ -155,15 +166,7 @@ TEST_F(ReclassifyTest, ADraftFollowsAFrameThatWasGivenUp) {
     Renderer renderer(device(), volume, above(0.7f), {});
     renderer.render(view, whole);
     ASSERT_TRUE(renderer.reclassify(above(0.4f)));
-    struct GivenUp {};
-    int left = calls;
-    const Progress giveUp = [&](std::string_view, double) {
-      if (left-- == 0) throw GivenUp();
-    };
-    try {
-      renderer.render(view, whole, giveUp);
-    } catch (const GivenUp&) {
-    }
+    renderGivenUp(renderer, view, whole, calls);
     ASSERT_TRUE(renderer.reclassify(above(0.2f)));
     EXPECT_NO_THROW(renderer.render(view, draft)) << "given up after " << calls << " calls";
     Renderer another(device(), volume, above(0.2f), {});
@@ -180,15 +183,7 @@ TEST_F(ReclassifyTest, AFrameThatWasGivenUpLosesNothing) {
     renderer.render(view, settings);
     const Classification function = above(0.2f);
     ASSERT_TRUE(renderer.reclassify(function));
-    struct GivenUp {};
-    int left = calls;
-    const Progress giveUp = [&](std::string_view, double) {
-      if (left-- == 0) throw GivenUp();
-    };
-    try {
-      renderer.render(view, settings, giveUp);
-    } catch (const GivenUp&) {
-    }
+    renderGivenUp(renderer, view, settings, calls);
     Renderer another(device(), volume, function, {});
     EXPECT_EQ(renderer.render(view, settings).pixels, another.render(view, settings).pixels) << "given up after " << calls << " calls";
   }

@@ -35,6 +35,18 @@ class ImageDirectorTest : public DeviceTest {
     return shown;
   }
 
+  /// Asks and takes until `isDone`; false if that takes too long.
+  template <typename Done>
+  static bool askUntil(ImageDirector& asked, ViewState& of, const Done& isDone) {
+    std::exception_ptr failure;
+    for (int i = 0; i < 20'000 && !isDone(); ++i) {
+      asked.ask(of, {64, 48}, false);
+      asked.take(of, failure);
+      std::this_thread::sleep_for(std::chrono::milliseconds(2));
+    }
+    return isDone();
+  }
+
   ViewState state;
   ImageDirector director{device(), false};
 };
@@ -78,13 +90,7 @@ TEST_F(ImageDirectorTest, EditsOfATransferFunctionAreDrawnWithAllVoxels) {
   ViewState same = state;
   same.changed = true;
   same.whole = same.latest = nullptr;
-  std::exception_ptr failure;
-  for (int i = 0; i < 20'000 && !another.isComplete(same); ++i) {
-    another.ask(same, {64, 48}, false);
-    another.take(same, failure);
-    std::this_thread::sleep_for(std::chrono::milliseconds(2));
-  }
-  ASSERT_TRUE(another.isComplete(same));
+  ASSERT_TRUE(askUntil(another, same, [&] { return another.isComplete(same); }));
   EXPECT_EQ(after.pixels, downloadImage(device(), *same.whole->image).pixels) << "as of a volume that was opened with this function";
 
   state.scene.classification.order = ClassificationOrder::Pre;
@@ -107,13 +113,7 @@ TEST_F(ImageDirectorTest, ColoursAreMixedOfLayersOnceTheyWereEdited) {
   const auto makeLayers = [&] {
     state.changed = true;
     follow();
-    std::exception_ptr failure;
-    for (int i = 0; i < 20'000 && !director.mayMix(state); ++i) {
-      director.ask(state, {64, 48}, false);
-      director.take(state, failure);
-      std::this_thread::sleep_for(std::chrono::milliseconds(2));
-    }
-    ASSERT_TRUE(director.mayMix(state));
+    ASSERT_TRUE(askUntil(director, state, [&] { return director.mayMix(state); }));
   };
   state.scene.lighting = {.lights = {{.light = {.place = {1, 1, 1}}}, {.light = {.place = {-1, 0, 1}}}}, .ambient = glm::dvec3(0.2)};
   follow();
