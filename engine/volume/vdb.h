@@ -96,11 +96,11 @@ struct ReadRequest {
 
 /// Reads one grid of numbers as a box around its active voxels (active tiles count as voxels, but for those of a fog volume that are 0);
 /// with temperatures, around their active voxels too. A file of temperatures alone is a flame without density. Where no grid can be told
-/// to be the density it is an error that lists the choice. A level set becomes a density of 1 inside and 0 outside, linear over three
-/// voxels across the surface; labels become solids (labels.h). Fails with ErrorKind::Input if a required grid of `more` does not exist, and
-/// for frustum transforms, other grid types, empty grids (EmptyVolumeError) and unreadable files; with ErrorKind::OutOfMemory if what is
-/// occupied exceeds `maximumVoxels`, before allocating it, or the box has an edge of more than 2^30 voxels. Around a box of more than 2^31
-/// voxels, those of value 0 are left out.
+/// to be the density it is an error that lists the choice. A level set becomes a density of 1 inside and 0 outside, with a smooth
+/// transition of four voxels across the surface; labels become solids (labels.h). Fails with ErrorKind::Input if a required grid of `more`
+/// does not exist, and for frustum transforms, other grid types, empty grids (EmptyVolumeError) and unreadable files; with
+/// ErrorKind::OutOfMemory if what is occupied exceeds `maximumVoxels`, before allocating it, or the box has an edge of more than 2^30
+/// voxels. Around a box of more than 2^31 voxels, those of value 0 are left out.
 Volume readVdb(const std::filesystem::path& file, const ReadRequest& request);
 Volume readVdb(const std::filesystem::path& file, const std::string& gridName, std::uint64_t maximumVoxels, const MoreGrids& more = {},
                const Progress& progress = {});

@@ -47,8 +47,9 @@ struct FogToDensity {
   float tile(float value, bool active) const { return active && !(hasEmptyTiles && value == 0.0f) ? value : kInactiveVoxel; }
 };
 
-/// The density of a level set's voxel: 1 inside, 0 outside, linear over three voxels across the surface, so
-/// that gradients have its direction. OpenVDB stores voxels deep inside as inactive.
+/// The density of a level set's voxel: 1 inside, 0 outside, with a smooth transition of four voxels across the surface, so that gradients
+/// have its direction: a linear one has bends where the opaque surface is seen, which show as rings. OpenVDB stores voxels deep inside as
+/// inactive.
 struct LevelSetToDensity {
   static constexpr bool kKeepsInactive = true;
   static constexpr int kMargin = 2;  // voxels around it, from which light reaches its surface
@@ -57,8 +58,9 @@ struct LevelSetToDensity {
   float operator()(float stored, bool active) const {
     const float distance = sign * stored;
     if (active && std::isnan(distance)) return distance;  // counted later and then set to 0, like every NaN
-    constexpr float kRamp = 3.0f;  // voxels
-    const float density = active ? std::clamp(0.5f - distance / (kRamp * voxelSize), 0.0f, 1.0f) : distance < 0.0f ? 1.0f : 0.0f;
+    constexpr float kRamp = 4.0f;                         // voxels
+    const float inwards = active ? std::clamp(0.5f - distance / (kRamp * voxelSize), 0.0f, 1.0f) : distance < 0.0f ? 1.0f : 0.0f;
+    const float density = inwards * inwards * (3.0f - 2.0f * inwards);
     return density > 0.0f ? density : kInactiveVoxel;
   }
   float tile(float distance, bool active) const { return (*this)(distance, active); }

@@ -71,19 +71,20 @@ TEST_F(Vdb, ALevelSetBecomesFogOfTheSameVolume) {
     double sum = 0.0;
     for (const float value : denseScalars(volume))
       if (value != kInactiveVoxel) sum += value;
-    constexpr double kRamp = 3.0 * kVoxelSize;  // mean volume of spheres whose radii are as much apart
-    const double expected = 4.0 / 3.0 * std::numbers::pi * (radius * radius * radius + radius * kRamp * kRamp / 4.0);
+    // The mean volume of spheres, over radii whose distribution is the derivative of the transition of four voxels.
+    constexpr double kVariance = 16.0 / 20.0 * kVoxelSize * kVoxelSize;
+    const double expected = 4.0 / 3.0 * std::numbers::pi * (radius * radius * radius + 3.0 * radius * kVariance);
     EXPECT_NEAR(sum * std::pow(kVoxelSize, 3) / expected, 1.0, radius < 0.5 ? 2e-2 : 2e-3) << radius;
     EXPECT_GT(volume.minimum, 0.0f);
     EXPECT_EQ(volume.maximum, 1.0f);
     const glm::ivec3 middle = volume.dimensions / 2;
     EXPECT_EQ(volume.scalar(middle.x, middle.y, middle.z), 1.0f);
     const double diameter = 2.0 * radius / kVoxelSize;
-    EXPECT_NEAR(volume.dimensions.x, diameter + 3.0 + 2.0 * 2.0, 2.0) << "the box ends two voxels beyond the density";
+    EXPECT_NEAR(volume.dimensions.x, diameter + 4.0 + 2.0 * 2.0, 2.0) << "the box ends two voxels beyond the density";
   }
 }
 
-TEST_F(Vdb, DensityFallsLinearlyOverTheSurfaceOfALevelSet) {
+TEST_F(Vdb, DensityFallsSmoothlyOverTheSurfaceOfALevelSet) {
   const FloatGrid::Ptr grid = FloatGrid::create(3.0f);
   grid->setGridClass(openvdb::GRID_LEVEL_SET);
   grid->setTransform(openvdb::math::Transform::createLinearTransform(2.0));
@@ -91,8 +92,10 @@ TEST_F(Vdb, DensityFallsLinearlyOverTheSurfaceOfALevelSet) {
   write({grid});
   const Volume volume = read();
   ASSERT_EQ(volume.dimensions, glm::ivec3(9, 5, 5)) << "with a margin of two voxels";
-  for (int x = 0; x < 5; ++x)  // distances of -0.75 voxels and on, over three
-    EXPECT_FLOAT_EQ(volume.scalar(x + 2, 2, 2), 0.5f - (0.5f * float(x) - 0.75f) / 3.0f);
+  for (int x = 0; x < 5; ++x) {  // distances of -0.75 voxels and on, over four
+    const float inwards = 0.5f - (0.5f * float(x) - 0.75f) / 4.0f;
+    EXPECT_FLOAT_EQ(volume.scalar(x + 2, 2, 2), inwards * inwards * (3.0f - 2.0f * inwards));
+  }
   EXPECT_EQ(volume.scalar(7, 2, 2), kInactiveVoxel);
 }
 
@@ -160,11 +163,11 @@ TEST_F(Vdb, ALevelSetThatIsNegativeOutsideIsTurned) {
     const FloatGrid::Ptr grid = FloatGrid::create(3.0f * sign);
     grid->setName("surface");
     grid->setGridClass(openvdb::GRID_LEVEL_SET);
-    for (int x = -3; x <= 3; ++x)
-      for (int y = -3; y <= 3; ++y) grid->tree().setValueOn(Coord(x, y, 0), sign * (float(std::max(std::abs(x), std::abs(y))) - 1.5f));
+    for (int x = -4; x <= 4; ++x)
+      for (int y = -4; y <= 4; ++y) grid->tree().setValueOn(Coord(x, y, 0), sign * (float(std::max(std::abs(x), std::abs(y))) - 1.5f));
     write({grid});
     const Volume volume = read();
-    EXPECT_EQ(volume.activeVoxels, 25u) << sign;
+    EXPECT_EQ(volume.activeVoxels, 49u) << sign;
     EXPECT_EQ(volume.remarks.empty(), sign > 0.0f);
   }
 }
