@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <fstream>
 #include <iterator>
+#include <map>
 #include <nlohmann/json.hpp>
 
 #include "apps/bench/baked_stages.h"
@@ -15,6 +16,7 @@
 #include "apps/common/text_table.h"
 #include "engine/core/atomic_file.h"
 #include "engine/core/error.h"
+#include "engine/core/json_file.h"
 #include "engine/octree/volume_limits.h"
 #include "engine/validation/cluster_scaling.h"
 
@@ -163,16 +165,43 @@ std::string timeText(double milliseconds) {
   return fmt::format("{:.{}f}", milliseconds, milliseconds < 10.0 ? 3 : 1);
 }
 
-std::vector<std::string> tableLines(const Results& results) {
+/// The name of a stage without what was measured, which follows a colon.
+std::string stageOf(const std::string& name) {
+  return name.substr(0, name.find(':'));
+}
+
+/// Milliseconds by stageOf(), of a file that --json wrote.
+using Before = std::map<std::string, double>;
+
+Before readBefore(const std::string& file) {
+  Before before;
+  try {
+    for (const nlohmann::json& stage : readJson("figures of the bench", file).at("stages"))
+      before.emplace(stageOf(stage.at("stage").get<std::string>()), stage.at("milliseconds").get<double>());
+  } catch (const nlohmann::json::exception&) {
+    fail(ErrorKind::Input, "'{}' is not what freevoxels-bench --json writes: name such a file", file);
+  }
+  return before;
+}
+
+std::vector<std::string> tableLines(const Results& results, const Before& before) {
   using Align = TextTable::Align;
   TextTable table{.columns = {Align::Left, Align::Right, Align::Right, Align::Right},
                   .rows = {{"stage", "ms", "x copy", "million/s"}}};
-  for (const Result& result : results)
+  if (!before.empty()) {
+    table.columns.push_back(Align::Right);
+    table.rows.front().emplace_back("x before");
+  }
+  for (const Result& result : results) {
     table.rows.push_back({result.name, timeText(result.milliseconds),
                           result.copyMilliseconds > 0.0
                               ? fmt::format("{:.1f}", result.milliseconds / result.copyMilliseconds)
                               : "",
                           result.perSecond > 0.0 ? fmt::format("{:.2f}", result.perSecond * 1e-6) : ""});
+    if (before.empty()) continue;
+    const auto found = before.find(stageOf(result.name));
+    table.rows.back().push_back(found == before.end() ? "" : fmt::format("{:.2f}", result.milliseconds / found->second));
+  }
   return table.lines();
 }
 
@@ -232,11 +261,13 @@ int main(int argc, char** argv) {
   DeviceOptions device;
   Extent extent;
   std::vector<std::string> wanted = stageNames();
-  std::string json;
+  std::string json, compared;
   bool cluster = false, march = false;
   app.add_option("IN", extent.inputs, "Volumes for whole renders: files, or procedural:NAME")
       ->capture_default_str();
   app.add_option("--json", json, "Write the figures as JSON to this file as well; draw_report.py plots those of --cluster");
+  app.add_option("--compare", compared, "Compare the times with those of a file that --json wrote: apps/bench/before.json has some")
+      ->type_name("FILE.json");
   app.add_option("--stages", wanted, "Only these stages, separated by commas [all]")
       ->delimiter(',')
       ->check(CLI::IsMember(stageNames()));
@@ -249,6 +280,7 @@ int main(int argc, char** argv) {
   device.add(app);
   app.callback([&] {
     if (!json.empty()) checkWritable(json);
+    const Before before = compared.empty() ? Before() : readBefore(compared);
     for (const std::string& input : extent.inputs)
       if (const InputDescription volume{.volume = input}; volume.kind() == VolumeKind::OpenVdb)
         listVdb(input);  // refuses a file that is missing or no volume before minutes of work
@@ -258,7 +290,7 @@ int main(int argc, char** argv) {
       if (cluster) return measureCluster(opened, extent.quick, json);
       const Results results = march ? marches(opened, extent) : measure(opened, extent, wanted);
       fmt::print("{}\n", opened.description().name);
-      for (const std::string& line : tableLines(results)) fmt::print("{}\n", line);
+      for (const std::string& line : tableLines(results, before)) fmt::print("{}\n", line);
       if (json.empty()) return;
       writeAtomically(json, [&](const std::filesystem::path& file) {
         std::ofstream stream(file);
