@@ -318,9 +318,8 @@ std::vector<Result> edits(const Device& device, int resolution, int runs) {
   FrameSettings whole{.size = {1280, 800}, .lighting = directionalLights(1)}, draft = whole;
   draft.size = whole.size / 5;
   draft.lod = 0.2f;
+  draft.quality = 0.5;
   draft.allowsOldLight = true;
-  draft.gather().mostSamplesAcrossPixel = 1.0;
-  draft.gather().sampleTolerance = 0.25f;
   const Camera camera = framingCamera(scene.volume, kDefaultAzimuth, kDefaultElevation, 1.6, {});
   renderer.render(camera, whole);
   Classification edited = scene.classification;

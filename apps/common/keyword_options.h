@@ -30,6 +30,8 @@ struct KeywordOptions {
 
   SceneDescription scene;
   std::shared_ptr<const Holdout> holdout;  ///< in memory, in place of the file of scene.camera; null if there is none
+  /// Milliseconds, more than 0, within which the frame is to be drawn, as a draft if need be.
+  std::optional<double> budget;
   DeviceOptions device;
   std::vector<std::string> warnings;  ///< what the user should know of the scene file
 };

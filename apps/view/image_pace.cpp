@@ -1,8 +1,6 @@
 #include "apps/view/image_pace.h"
 
-#include <algorithm>
 #include <array>
-#include <cmath>
 
 namespace freevoxels {
 
@@ -15,9 +13,10 @@ constexpr double kMilliseconds = 46.0;
 /// Along the longest edge. With fewer voxels the image of an edited transfer function does not show where its threshold lies, so that slower
 /// images are accepted instead.
 constexpr std::array kVoxels{kAllVoxels, 128, 96};
-constexpr double kMinScale = 0.1, kFirstScale = 0.5;
-/// Where voxels cost more than pixels: beyond these there are fewer or more of them.
-constexpr double kCoarsensBelow = 0.35, kRefinesAbove = 0.95;
+/// Where voxels cost more than pixels: beyond these qualities there are fewer or more of them.
+constexpr double kCoarsensBelow = 0.175, kRefinesAbove = 0.475;
+/// Fewer pixels hardly take less time, as most of it then goes into what is made of the voxels.
+constexpr double kLeastOfFewer = 0.1;
 /// Each number of voxels has a table of its own: none is chosen for a single slow image, nor the one that
 /// was too slow again soon.
 constexpr int kMinImages = 3, kRestingImages = 200;
@@ -36,26 +35,23 @@ double ImageRate::perSecond() const {
   return double(shown_.size() - 1) / time.count();
 }
 
+AdaptiveResolution::AdaptiveResolution(Voxels voxels)
+    : all_(voxels == Voxels::All), step_(all_ ? 0 : kFirstStep), draft_(kMilliseconds, all_ ? DraftQuality::kLeast : kLeastOfFewer) {}
+
 int AdaptiveResolution::voxelsAlongEdge() const {
   return kVoxels[step_];
 }
 
-void AdaptiveResolution::beginFrom(double wholeMilliseconds) {
-  scale_ = std::clamp(std::sqrt(kMilliseconds / std::max(wholeMilliseconds, 1.0)), kMinScale, 1.0);
-}
-
 void AdaptiveResolution::took(double milliseconds) {
-  // Slowly, as the window's own frames make one image take longer than the next.
-  const double faster = std::pow(kMilliseconds / std::max(milliseconds, 1.0), 0.25);
-  scale_ = std::clamp(scale_ * std::clamp(faster, 0.75, 1.15), kMinScale, 1.0);
+  draft_.took(milliseconds);
   if (all_) return;
-  const bool coarsens = scale_ < kCoarsensBelow && step_ + 1 < kVoxels.size();
-  const bool refines = scale_ > kRefinesAbove && step_ > 1 && --rest_ <= 0;
+  const bool coarsens = quality() < kCoarsensBelow && step_ + 1 < kVoxels.size();
+  const bool refines = quality() > kRefinesAbove && step_ > 1 && --rest_ <= 0;
   images_ = coarsens || refines ? images_ + 1 : 0;
   if (images_ < kMinImages) return;
   step_ += coarsens ? 1 : std::size_t(-1);
   if (coarsens) rest_ = kRestingImages;
-  scale_ = kFirstScale;
+  draft_ = DraftQuality(kMilliseconds, kLeastOfFewer);
   images_ = 0;
 }
 

@@ -6,6 +6,8 @@
 #include <deque>
 #include <limits>
 
+#include "engine/scene/draft_quality.h"
+
 namespace freevoxels {
 
 /// More voxels along an edge than any volume has.
@@ -29,14 +31,14 @@ class AdaptiveResolution {
   enum class Voxels { All, Fewer };
   /// Images have all voxels, as while only the camera moves, so that they show the volume itself; or fewer, as while all that is made of
   /// the voxels changes.
-  explicit AdaptiveResolution(Voxels voxels) : all_(voxels == Voxels::All), step_(all_ ? 0 : kFirstStep) {}
+  explicit AdaptiveResolution(Voxels voxels);
 
   /// Largest number of voxels along the longest edge of the volume.
   int voxelsAlongEdge() const;
-  /// Scale of the image's edges, in 0.1..1.
-  double scale() const { return scale_; }
-  /// Chooses the scale of the first image from the time that a whole image took, of all voxels in full size.
-  void beginFrom(double wholeMilliseconds);
+  /// FrameSettings::quality of an image in the window's size.
+  double quality() const { return draft_.quality(); }
+  /// Chooses the quality of the first image from the time that a whole image took, of all voxels.
+  void beginFrom(double wholeMilliseconds) { draft_.beginFrom(wholeMilliseconds, 1.0); }
   /// Reports the time of the last image.
   void took(double milliseconds);
 
@@ -45,7 +47,7 @@ class AdaptiveResolution {
 
   bool all_;
   std::size_t step_;  ///< index into the numbers of voxels
-  double scale_ = 0.5;
+  DraftQuality draft_;
   int images_ = 0;  ///< consecutive images that call for another number of voxels
   int rest_ = 0;      ///< images before more voxels are tried
 };

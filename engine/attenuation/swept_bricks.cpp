@@ -11,12 +11,10 @@ namespace freevoxels {
 
 namespace {
 
-constexpr int kEdge = ScalarBricks::kEdge;
-
 /// Calls `visit` with the bricks that are marked in a box, by their places in it.
 template <typename Visit>
 void forEachBrickIn(const SparseGrid<std::uint8_t>& bricks, const VoxelRange& box, const Visit& visit) {
-  const glm::ivec3 first = box.first / kEdge, counts = (box.extent() + kEdge - 1) / kEdge;
+  const glm::ivec3 first = box.first / ScalarBricks::kEdge, counts = (box.extent() + ScalarBricks::kEdge - 1) / ScalarBricks::kEdge;
   const std::size_t stored = bricks.nodes().size() * std::tuple_size_v<SparseGrid<std::uint8_t>::Node>;
   if (double(counts.x) * double(counts.y) * double(counts.z) > double(stored)) {
     bricks.forEach([&](glm::ivec3 brick, std::uint8_t) {
@@ -48,7 +46,7 @@ SparseGrid<std::uint8_t> withNeighbours(SparseGrid<std::uint8_t> bricks) {
 }
 
 Cells cellsOfBricks(const SparseGrid<std::uint8_t>& bricks, const VoxelRange& box) {
-  constexpr int kCells = kEdge / shader::kSkipGroup;  // along a brick's edge
+  constexpr int kCells = ScalarBricks::kEdge / shader::kSkipGroup;  // along a brick's edge
   Cells cells((box.extent() + shader::kSkipGroup - 1) / shader::kSkipGroup);
   forEachBrickIn(bricks, box, [&](glm::ivec3 place) {
     const glm::ivec3 first = place * kCells, end = glm::min(first + kCells, cells.dimensions);
@@ -60,7 +58,7 @@ Cells cellsOfBricks(const SparseGrid<std::uint8_t>& bricks, const VoxelRange& bo
 }
 
 SweptBricks::SweptBricks(const SparseGrid<std::uint8_t>& bricks, const VoxelRange& box, const FaceRays& fan)
-    : fan_(fan), layers_(std::size_t((box.extent()[fan.axis] + kEdge - 1) / kEdge)) {
+    : fan_(fan), layers_(std::size_t((box.extent()[fan.axis] + ScalarBricks::kEdge - 1) / ScalarBricks::kEdge)) {
   forEachBrickIn(bricks, box, [&](glm::ivec3 place) {
     layers_[std::size_t(place[fan.axis])].push_back(glm::ivec2(place[(fan.axis + 1) % 3], place[(fan.axis + 2) % 3]));
   });
@@ -77,7 +75,7 @@ std::size_t SweptBricks::mostInALayer() const {
 /// The layer of a plane, or the nearest one where that is beside the box.
 int SweptBricks::layerOf(int plane) const {
   const int coordinate = fan_.firstPlane + fan_.direction * plane;
-  return std::clamp(coordinate, 0, int(layers_.size()) * kEdge - 1) / kEdge;
+  return std::clamp(coordinate, 0, int(layers_.size()) * ScalarBricks::kEdge - 1) / ScalarBricks::kEdge;
 }
 
 std::vector<SweptBricks::Stretch> SweptBricks::stretchesOf(int begin, int end) const {
@@ -106,7 +104,7 @@ std::vector<std::uint32_t> SweptBricks::groupsOf(int begin, int end) const {
       glm::dvec2 low(std::numeric_limits<double>::max()), high = -low;
       for (const int plane : {std::max(begin - 1, 0), end})
         for (int corner = 0; corner < 4; ++corner) {
-          const glm::ivec2 voxel = brick * kEdge + glm::ivec2(corner % 2, corner / 2) * (kEdge - 1);
+          const glm::ivec2 voxel = brick * ScalarBricks::kEdge + glm::ivec2(corner % 2, corner / 2) * (ScalarBricks::kEdge - 1);
           const glm::dvec2 ray = rayAt(voxel, plane);
           low = glm::min(low, ray);
           high = glm::max(high, ray);

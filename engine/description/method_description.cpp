@@ -3,6 +3,12 @@
 
 namespace freevoxels {
 
+namespace {
+
+constexpr double kCoarseLightBelow = 0.5;  // quality
+
+}  // namespace
+
 TableSettings MethodDescription::table() const {
   return {.code = code.value_or(paper ? AttenuationCode::Linear8 : AttenuationCode::Depth8),
           .pathLengthCorrection = pathLengthCorrection.value_or(!paper),
@@ -20,6 +26,8 @@ Draw MethodDescription::drawing() const {
 
 void MethodDescription::apply(FrameSettings& frame) const {
   frame.lod = float(lod.value_or(paper || isProjected() ? 0.0 : 1.0));
+  frame.quality = quality.value_or(1.0);
+  frame.scatteringCoarseness = frame.quality < kCoarseLightBelow ? 1 : 0;
   if (isProjected() && frame.lod > 0.0f)
     fail(ErrorKind::Usage, "{} shows the values of voxels, not of levels of detail: leave {} out", Parameter("mode"), Parameter("lod"));
   if (drawing() == Draw::Gather) {

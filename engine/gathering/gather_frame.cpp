@@ -280,7 +280,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
   const glm::dvec2 size(settings.size);
   const int raysOfPixel = settings.holdout ? raysOfHeldOutPixel(settings.size) : 0;
   // At least a few samples, however near the volume is.
-  const double least = std::max(leastPitch(settings.size), 1.0 / settings.gather().mostSamplesAcrossPixel);
+  const double least = std::max(leastPitch(settings.size), 1.0 / settings.mostSamplesAcrossPixel());
   const double wanted = std::clamp(voxel / (kSamplesPerVoxel * std::max(distance, 1e-300)), least, std::max(size.x, size.y));
   const double pitch = raysOfPixel > 0 ? 1.0 / raysOfPixel : std::round(wanted * kPitchUnits) / kPitchUnits;
   // Coarse samples, two pitches apart, would miss single voxels that are much smaller, and edges of a holdout if not each pixel has one.
@@ -295,7 +295,7 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .coarsest = detail.coarsest,
                             .size = settings.size,
                             .pitch = float(pitch),
-                            .sampleTolerance = adapts ? settings.gather().sampleTolerance : 0.0f,
+                            .sampleTolerance = adapts ? settings.sampleTolerance() : 0.0f,
                             .distanceTolerance = float(kSmoothVoxels * volume.voxelSize),
                             .endTransmittance = float(endTransmittance),
                             .orthographic = orthographic ? 1 : 0,

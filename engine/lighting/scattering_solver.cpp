@@ -148,6 +148,8 @@ bool isSameLight(const Lighting& a, const Lighting& b) {
 constexpr std::size_t kFewCells = 512;
 /// Residual at which coarser grids stop. They only provide a start, and discretisation changes their solution by more than this.
 constexpr double kCoarseTolerance = 5e-3;
+/// The same of all grids of a draft, whose cells are coarser than the medium's.
+constexpr double kDraftTolerance = 5e-2;
 
 }  // namespace
 
@@ -181,7 +183,8 @@ std::unique_ptr<ScatteringGrid> ScatteringSolver::solveAllOrders(const Lighting&
     Gmres gmres(*grid, progress);
     // The norm of a vector grows with the root of the number of cells.
     const double scale = coarse ? std::sqrt(double(grid->cells()) / double(coarse->cells())) : 0.0;
-    const double first = gmres.solve(scale * reference, level > level_ ? kCoarseTolerance : kScatteringTolerance);
+    const double tolerance = level_ > 0 ? kDraftTolerance : level > level_ ? kCoarseTolerance : kScatteringTolerance;
+    const double first = gmres.solve(scale * reference, tolerance);
     reference = coarse ? scale * reference : first;
     facts_.sets = gmres.sets();
     facts_.work += gmres.sets() * double(grid->cells()) / double(medium().grid().count());

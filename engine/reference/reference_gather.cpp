@@ -74,7 +74,7 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
       middle_(0.5 * glm::dvec2(settings.size)),
       rays_(pixelRays(camera, settings.size, volume.indexToWorld)),
       linear_(volume.indexToWorld),
-      detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, double(settings.lod))) {
+      detail_(detailRule(HierarchyLayout(volume.dimensions), rays_, settings.size, settings.blockPixels())) {
   // Levels come in slice by slice, which may be complete only after all blocks are small.
   if (!rays_.orthographic || detail_.coarsestShare < 1.0) detail_.finest = std::max(detail_.finest - 1, 0);
   const Ray middle = rayThrough(glm::dvec2(0.0));

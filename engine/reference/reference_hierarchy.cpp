@@ -130,8 +130,8 @@ std::vector<Block> referenceCut(const Volume& volume, std::span<const double> ex
                                 const Camera& camera, const FrameSettings& settings,
                                 std::span<const glm::dvec3> emission) {
   const HierarchyLayout hierarchy(volume.dimensions);
-  const DetailRule rule = detailRule(hierarchy, pixelRays(camera, settings.size, volume.indexToWorld), settings.size,
-                                     settings.isSorted() ? 0.0 : double(settings.lod));
+  const DetailRule rule =
+      detailRule(hierarchy, pixelRays(camera, settings.size, volume.indexToWorld), settings.size, settings.blockPixels());
   std::vector<Block> cut;
   const glm::ivec3 n = volume.dimensions;
   for (int z = 0; z < n.z; ++z)

@@ -1,6 +1,7 @@
 #pragma once
 // The settings of a frame apart from camera and classification.
 
+#include <algorithm>
 #include <glm/glm.hpp>
 #include <memory>
 #include <optional>
@@ -40,9 +41,6 @@ struct GatherSettings {
   /// The roughness up to which rays are interpolated from rays twice as far apart (gather_roughness.comp); 0 marches every ray, as do
   /// parts, cubes and images of voxels smaller than 0.8 pixels.
   float sampleTolerance = 1.0f / 16.0f;
-  /// The most samples along the edge of a pixel, more than 0. There are 2.4 along the edge of a voxel where that is less. A draft has one
-  /// or less: the time of a frame of small voxels follows their number. Not for holdouts, and the same for all parts of an image.
-  double mostSamplesAcrossPixel = 2.0;
   /// Only of single volumes that are classified after interpolation (Classification::isPost), without lighting, at `lod` 0.
   IntensityProjection projection = IntensityProjection::None;
 };
@@ -65,6 +63,9 @@ struct FrameSettings {
   std::variant<GatherSettings, SplatSettings> method;
   /// Largest edge in pixels of a block of voxels that is drawn as one element; 0 draws voxels only, as Sorted does.
   float lod = 1.0f;
+  /// Less than 1 draws a draft of as many pixels: fewer rays (mostSamplesAcrossPixel, sampleTolerance), or larger blocks (blockPixels).
+  /// More than 0, and the same for all parts of an image.
+  double quality = 1.0;
   bool depth = false;  ///< whether to compute Image::depth
   /// If empty, every voxel sends out its colour without lighting.
   std::optional<Lighting> lighting = std::nullopt;
@@ -75,6 +76,12 @@ struct FrameSettings {
   /// Where rays end, of the image's size; only gathered. Null if there is none.
   std::shared_ptr<const Holdout> holdout = nullptr;
 
+  /// Samples of the gather along the edge of a pixel; there are 2.4 along the edge of a voxel where that is less. Not of holdouts.
+  double mostSamplesAcrossPixel() const { return 2.0 * quality; }
+  /// GatherSettings::sampleTolerance, in drafts up to four times as much: more rays show more than exact ones.
+  float sampleTolerance() const { return gather().sampleTolerance * float(std::min(1.0 / (quality * quality), 4.0)); }
+  /// `lod`; splats, whose time follows their number, have larger blocks in drafts.
+  double blockPixels() const { return isSorted() ? 0.0 : gathers() ? double(lod) : double(lod) / quality; }
   bool gathers() const { return std::holds_alternative<GatherSettings>(method); }
   GatherSettings& gather() { return std::get<GatherSettings>(method); }
   const GatherSettings& gather() const { return std::get<GatherSettings>(method); }

@@ -144,7 +144,7 @@ FrameConstants makeFrameConstants(const Device& device, const DeviceVolume& volu
   const glm::dmat3 linear(volume.indexToWorld);
   FrameConstants frame{};
   frame.setup = setupFrame(volume, table, settings, fromMiddle);
-  frame.detail = detailRule(volume.hierarchy, rays, settings.size, settings.isSorted() ? 0.0 : double(settings.lod));
+  frame.detail = detailRule(volume.hierarchy, rays, settings.size, settings.blockPixels());
   frame.cull = cullRule(volume.layout.dimensions, rays, settings);
   frame.brightestRay = brightestRay(volume);
   const double brightest = std::max(frame.brightestRay, 1.0);

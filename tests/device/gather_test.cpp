@@ -65,20 +65,20 @@ TEST_F(GatherTest, MatchesTheSumAlongAnAxis) {
 }
 
 /// As the viewer draws while the camera moves: a sample a pixel or fewer, with all voxels and the light of the whole image.
-TEST_F(GatherTest, DraftsHaveAsManySamplesAsTheyAreAllowedAndShowTheSame) {
+TEST_F(GatherTest, DraftsHaveAsManySamplesAsTheirQualitySaysAndShowTheSame) {
   const QualityScene head = makeQualityScene({"head", QualityColor::Bone, false}, 64, makeProcedural("head", 64));
   Renderer renderer(device(), head.volume, head.classification, {});
   const Camera camera = framingCamera(head.volume, 35.0, 25.0, 1.0, {});
   FrameSettings settings = gathering({96, 96});
   settings.lighting = Lighting{.lights = {{.place = {1.0, 0.5, 0.5}}}, .ambient = glm::dvec3(0.2), .surface = 1.0};
   const Image whole = renderer.render(camera, settings);
-  for (const double across : {1.0, 0.5}) {
+  for (const double quality : {0.5, 0.25}) {
     FrameSettings draft = settings;
     draft.gather().sampleTolerance = 0.0f;
-    draft.gather().mostSamplesAcrossPixel = across;
+    draft.quality = quality;
     const GatherStages stages = RendererStages(renderer).renderGatherStages(camera, draft);
-    EXPECT_EQ(stages.lattice.pitch, 1.0 / across);
-    EXPECT_GT(psnr(stages.image, whole), across == 1.0 ? 33.0 : 26.0) << across;
+    EXPECT_EQ(stages.lattice.pitch, 0.5 / quality);
+    EXPECT_GT(psnr(stages.image, whole), quality == 0.5 ? 33.0 : 26.0) << quality;
   }
 }
 

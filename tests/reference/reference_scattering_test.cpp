@@ -82,10 +82,10 @@ TEST(ReferenceScattering, WhatAbsorbsNothingIsAsBrightAsTheSkyAroundIt) {
 /// Without absorption what is emitted goes out: the flux through the faces of a box, from the cells at them, is the power of what shines in
 /// it.
 TEST(ReferenceScattering, WhatIsEmittedGoesOutWhereNothingIsAbsorbed) {
-  constexpr int kEdge = 24;
+  constexpr int kCells = 24;
   constexpr double kSigma = 0.15;  // cells so thin that their errors do not matter
-  Volume volume = fullBox(glm::ivec3(kEdge));
-  volume.temperature = TemperatureGrid{.name = "", .values = ScalarBricks::make(glm::ivec3(kEdge), [](glm::ivec3 v) {
+  Volume volume = fullBox(glm::ivec3(kCells));
+  volume.temperature = TemperatureGrid{.name = "", .values = ScalarBricks::make(glm::ivec3(kCells), [](glm::ivec3 v) {
                                                      return glm::length(glm::dvec3(v) - 11.5) < 4.0 ? 2000.0f : 0.0f;
                                                    })};
   summariseValues(*volume.temperature);
@@ -94,19 +94,19 @@ TEST(ReferenceScattering, WhatIsEmittedGoesOutWhereNothingIsAbsorbed) {
   const ScatteredField field = referenceScattering(medium, {.lights = {}, .phaseG = -1e-6, .scattering = kAllOrders}, 1e-8);
   double emitted = 0.0, leaving = 0.0;
   glm::ivec3 cell;
-  for (cell.z = 0; cell.z < kEdge; ++cell.z)
-    for (cell.y = 0; cell.y < kEdge; ++cell.y)
-      for (cell.x = 0; cell.x < kEdge; ++cell.x) {
+  for (cell.z = 0; cell.z < kCells; ++cell.z)
+    for (cell.y = 0; cell.y < kCells; ++cell.y)
+      for (cell.x = 0; cell.x < kCells; ++cell.x) {
         const std::size_t i = medium.grid().index(cell);
         emitted += medium.cells()[i].emission.g;
         // Between this cell and the one around the box of those that lie within four cells of its faces.
         for (int axis = 0; axis < 3; ++axis)
-          for (const int face : {3, kEdge - 4}) {
+          for (const int face : {3, kCells - 4}) {
             bool onFace = cell[axis] == face;
-            for (int other = 0; other < 3; ++other) onFace = onFace && cell[other] >= 3 && cell[other] <= kEdge - 4;
+            for (int other = 0; other < 3; ++other) onFace = onFace && cell[other] >= 3 && cell[other] <= kCells - 4;
             double share = 1.0;  // of the cells at the borders of the face half the area
             for (int other = 0; other < 3; ++other)
-              if (other != axis && (cell[other] == 3 || cell[other] == kEdge - 4)) share *= 0.5;
+              if (other != axis && (cell[other] == 3 || cell[other] == kCells - 4)) share *= 0.5;
             if (onFace) leaving += share * field.fluxes[i][std::size_t(axis)].g * (face == 3 ? -1.0 : 1.0);
           }
       }

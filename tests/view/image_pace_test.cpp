@@ -32,7 +32,7 @@ TEST(ImageRate, BeginsAnewAfterAPause) {
 /// Milliseconds of an image, for splats and for pixels.
 double timeOf(const AdaptiveResolution& pace, double splats, double pixels) {
   const double voxels = pace.voxelsAlongEdge() / 64.0;
-  return splats * voxels * voxels * voxels + pixels * pace.scale() * pace.scale();
+  return splats * voxels * voxels * voxels + 4.0 * pixels * pace.quality() * pace.quality();
 }
 
 TEST(AdaptiveResolution, ComesToImagesThatAreQuickEnoughAndStays) {
@@ -55,9 +55,9 @@ TEST(AdaptiveResolution, IsAsFineAsTimeAllows) {
   AdaptiveResolution pace(AdaptiveResolution::Voxels::Fewer);
   for (int i = 0; i < 20; ++i) pace.took(500.0);
   EXPECT_EQ(pace.voxelsAlongEdge(), 96) << "fewer do not show what is edited";
-  for (int i = 0; i < 2000; ++i) pace.took(timeOf(pace, 2.0, 10.0));
+  for (int i = 0; i < 2000; ++i) pace.took(timeOf(pace, 2.0, 5.0));
   EXPECT_EQ(pace.voxelsAlongEdge(), 128);
-  EXPECT_EQ(pace.scale(), 1.0);
+  EXPECT_EQ(pace.quality(), 1.0);
 }
 
 TEST(AdaptiveResolution, DoesNotChangeTheVoxelsForOneSlowImage) {
@@ -74,18 +74,18 @@ TEST(AdaptiveResolution, OfAllVoxelsKeepsThemHoweverSlowImagesAre) {
     EXPECT_EQ(pace.voxelsAlongEdge(), kAllVoxels);
     pace.took(2000.0);
   }
-  EXPECT_EQ(pace.scale(), 0.1);
+  EXPECT_EQ(pace.quality(), DraftQuality::kLeast);
   for (int i = 0; i < 100; ++i) pace.took(5.0);
-  EXPECT_EQ(pace.scale(), 1.0);
+  EXPECT_EQ(pace.quality(), 1.0);
 }
 
-/// An image of a quarter of the pixels takes a quarter of the time.
-TEST(AdaptiveResolution, BeginsWithTheScaleForWhichTheWholeImageSaysThatThereIsTime) {
+/// An image of half the quality takes a quarter of the time.
+TEST(AdaptiveResolution, BeginsWithTheQualityForWhichTheWholeImageSaysThatThereIsTime) {
   AdaptiveResolution pace(AdaptiveResolution::Voxels::All);
   pace.beginFrom(400.0);
-  EXPECT_NEAR(pace.scale() * pace.scale() * 400.0, 46.0, 1.0);
+  EXPECT_NEAR(pace.quality() * pace.quality() * 400.0, 46.0, 1.0);
   pace.beginFrom(10.0);
-  EXPECT_EQ(pace.scale(), 1.0);
+  EXPECT_EQ(pace.quality(), 1.0);
 }
 
 }  // namespace
