@@ -6,6 +6,7 @@
 #include "apps/view/view_options.h"
 #include "apps/view/viewer.h"
 #include "apps/view/window.h"
+#include "apps/view/window_devices.h"
 
 int main(int argc, char** argv) {
   CLI::App app(
@@ -13,6 +14,8 @@ int main(int argc, char** argv) {
       "freevoxels-view");
   freevoxels::ViewOptions options;
   options.add(app);
+  bool triesPresentation = false;
+  app.add_flag(freevoxels::kTryPresentation, triesPresentation)->group("");
   app.footer(
       "Examples:\n"
       "  freevoxels-view cloud.vdb\n"
@@ -22,7 +25,8 @@ int main(int argc, char** argv) {
       "Drag to turn, Shift + drag to pan, wheel to come nearer. Ctrl+O opens a file, Ctrl+S saves the image, Ctrl+Z undoes an "
       "edit; F1 lists all keys.\n"
       "Exit codes: as of 'freevoxels'.");
-  app.callback([&options] {
+  app.callback([&options, &triesPresentation] {
+    if (triesPresentation) return freevoxels::tryPresentation(options.device);
     options.prepare();
     const freevoxels::WindowSystem windows;
     freevoxels::withInstance(

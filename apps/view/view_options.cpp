@@ -24,6 +24,10 @@ void ViewOptions::add(CLI::App& app) {
   scene.addFile(app);
   scene.addMethod(app);
   device.add(app);
+  addText(app, "--show-on", "INDEX|NAME|UUID|auto", showOn,
+          "Device that draws the window, which shows the images of --device [auto: the same, or the CPU where that cannot present on this "
+          "display]")
+      ->group("Device");
   messages.add(app);
   scene.addField(app, "frames", fmt::format("Frames of a turntable that is saved [{}]", kDefaultFrames));
   CLI::Option* const file =

@@ -16,6 +16,7 @@ struct ViewOptions {
   DeviceOptions device;
   MessageOptions messages;
   std::optional<Sequence> sequence;  ///< the sequence of which IN is a frame
+  std::optional<std::string> showOn;  ///< WindowDevices
   std::optional<std::string> screenshot;
   std::optional<int> after;
 

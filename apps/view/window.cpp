@@ -63,7 +63,8 @@ std::span<const char* const> WindowSystem::instanceExtensions() const {
   return {names, count};
 }
 
-Window::Window(const WindowSystem&, const std::string& title, glm::ivec2 size) {
+Window::Window(const WindowSystem&, const std::string& title, glm::ivec2 size, bool visible) {
+  glfwWindowHint(GLFW_VISIBLE, visible ? GLFW_TRUE : GLFW_FALSE);
   glfwWindowHint(GLFW_CLIENT_API, GLFW_NO_API);
   glfwWindowHint(GLFW_SCALE_TO_MONITOR, GLFW_TRUE);
   window_ = glfwCreateWindow(size.x, size.y, title.c_str(), nullptr, nullptr);

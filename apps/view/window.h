@@ -29,7 +29,7 @@ class WindowSystem {
 class Window {
  public:
   /// `size` is in screen units. Creates Dear ImGui's context, which reads this window's input.
-  Window(const WindowSystem&, const std::string& title, glm::ivec2 size);
+  Window(const WindowSystem&, const std::string& title, glm::ivec2 size, bool visible = true);
   ~Window();
   Window(const Window&) = delete;
   Window& operator=(const Window&) = delete;

@@ -185,9 +185,13 @@ std::vector<DeviceDescription> listDevices(const Instance& instance) {
   return descriptions;
 }
 
+DeviceDescription chooseDevice(const Instance& instance, std::string_view selector) {
+  return choose(listDevices(instance), selector);
+}
+
 Device::Device(const Instance& instance, std::string_view selector, const DeviceLimits& limits, std::span<const char* const> moreExtensions,
                const std::filesystem::path& cacheFolder)
-    : description_(choose(listDevices(instance), selector)),
+    : description_(chooseDevice(instance, selector)),
       physical_(description_.physical),
       limits_(limits),
       mapsOwnMemory_(!instance.validates()),

@@ -39,6 +39,9 @@ struct DeviceDescription {
 /// All Vulkan devices, in the order of their indices.
 std::vector<DeviceDescription> listDevices(const Instance& instance);
 
+/// The device that Device opens for a selector. Fails as it does.
+DeviceDescription chooseDevice(const Instance& instance, std::string_view selector);
+
 /// A device and a queue of the caller's, which must outlive the Device that uses them. They must meet device_requirements.h. Threads of
 /// the Device compile pipelines until it ends.
 struct AdoptedDevice {
