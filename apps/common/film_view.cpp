@@ -137,7 +137,7 @@ class Survey {
     view.scene.camera = description_.method.slice ? sliceCameraOf(description_, volume)
                                                   : description_.camera
                                                         .resolve(
-                                                            volume.up, [&] { return subjectOf(corners); }, 1)
+                                                            volume, [&] { return subjectOf(corners); }, 1)
                                                         .front();
     view.scene.lighting = description_.resolveLighting(volume, classification, view.scene.camera);
     forgetVoxels();

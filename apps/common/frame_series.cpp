@@ -13,6 +13,7 @@
 #include "apps/common/output_options.h"
 #include "apps/common/share_group.h"
 #include "engine/cube_level.h"
+#include "engine/description/flight_description.h"
 #include "engine/volume/content_hash.h"
 #include "engine/vulkan/pipeline.h"
 
@@ -151,9 +152,9 @@ FrameSeries::VolumeView FrameSeries::beginVolume(const std::shared_ptr<const Vol
   const bool isFirst = !film_->reference();
   VolumeView view{.scene = film_->resolve(input, std::move(volume)), .settings = options_.frameSettings()};
   Scene& scene = view.scene;
-  view.cameras = {scene.camera};
-  if (jobs.size() > 1) view.cameras = options_.scene.description.of(input).cameras(scene, int(jobs.size()));
-  scene.camera = view.cameras.front();
+  view.frames = {{.camera = scene.camera, .lights = {}}};
+  if (jobs.size() > 1) view.frames = options_.scene.description.of(input).views(scene, int(jobs.size()));
+  scene.show(view.frames.front());
   view.settings.lighting = scene.lighting;
   progress_.erase();
   if (isFirst)
@@ -188,6 +189,8 @@ void FrameSeries::agree(const Scene& view, const VolumeSource& source, const Fra
   if (options_.group == nullptr) return;
   options_.group->agree("another version of the program", programVersion());
   options_.group->agree("another volume, transfer function, environment or holdout", report_.contentHash);
+  if (const std::optional<std::string>& flight = options_.scene.description.camera.flight)
+    options_.group->agree("another flight", flightText(readFlight(*flight)));
   OptionList options;
   for (const auto& [name, value] : report_.options)
     if (!name.empty()) options.emplace_back(name, value);  // the volume's own name may differ from machine to machine
@@ -195,15 +198,20 @@ void FrameSeries::agree(const Scene& view, const VolumeSource& source, const Fra
 }
 
 /// Has the processes of a group draw cube by cube where the volume may not fit on one of them.
-void FrameSeries::agreeOnCubes(Renderer& renderer, const FrameSettings& settings) {
+void FrameSeries::agreeOnCubes(Renderer& renderer, const VolumeView& view) {
   if (!options_.drawsShares() || options_.shares.coloredParts) return;
+  const auto lights = [](const FrameView& frame) { return frame.lights.size(); };
+  Scene scene = view.scene;
+  scene.show(*std::ranges::max_element(view.frames, {}, lights));  // which takes the most memory
+  FrameSettings settings = view.settings;
+  settings.lighting = scene.lighting;
   const std::uint64_t fits = renderer.surelyFits(settings) ? 1 : 0;
   if ((options_.group != nullptr ? options_.group->least(fits) : fits) == 0) renderer.requireCubes();
 }
 
 void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::span<const FrameJob> jobs) {
   addTimes(report_.stages, renderer.buildTimings());
-  agreeOnCubes(renderer, view.settings);
+  agreeOnCubes(renderer, view);
   Scene scene = view.scene;
   for (std::size_t i = 0; i < jobs.size(); ++i, ++progress_.drawn) {
     if (jobs[i].isSkipped) continue;
@@ -211,8 +219,9 @@ void FrameSeries::drawFrames(Renderer& renderer, const VolumeView& view, std::sp
       drawnElsewhere_.push_back(&jobs[i]);
       continue;
     }
-    scene.camera = view.cameras[i];
+    scene.show(view.frames[i]);
     FrameSettings settings = view.settings;
+    settings.lighting = scene.lighting;
     settings.holdout = holdoutOf(jobs[i]);
     if (options_.drawsShares())
       drawShares(renderer, scene, settings, jobs[i]);

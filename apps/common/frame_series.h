@@ -1,5 +1,5 @@
 #pragma once
-// Draws the frames of a command on one device: one volume seen by one camera or by those of a turn, or the volumes of a film.
+// Draws the frames of a command on one device: one volume seen by one camera or by those of a turn or a flight, or the volumes of a film.
 
 #include <future>
 #include <memory>
@@ -25,17 +25,17 @@ class FrameSeries {
   FrameSeries(const RenderOptions& options, const Device& device, RunReport& report);
 
   /// Draws and writes every frame and prints the names of its files. Neighbouring frames of one volume share its table, and
-  /// are the steps of a full turn. Of several volumes, one that holds nothing becomes an image of the background, and one that
+  /// are the steps of a full turn or a flight. Of several volumes, one that holds nothing becomes an image of the background, and one that
   /// cannot be read is left out: its error is printed, and at the end ErrorKind::Input is thrown.
   void draw(std::span<const FrameJob> jobs);
   /// Prints the names of frames that other processes of the group drew, when these are done.
   void printDrawnElsewhere();
 
  private:
-  /// What the frames of one volume have in common, and their cameras.
+  /// What the frames of one volume have in common, and what each of them shows.
   struct VolumeView {
     Scene scene;
-    std::vector<Camera> cameras;
+    std::vector<FrameView> frames;
     FrameSettings settings;
   };
   struct ReducedSums {
@@ -62,7 +62,7 @@ class FrameSeries {
   VolumeView beginVolume(const std::shared_ptr<const VolumeSource>& source, std::span<const FrameJob> jobs);
   void announce(const Scene& view, std::size_t frames);
   void agree(const Scene& view, const VolumeSource& source, const FrameJob& job);
-  void agreeOnCubes(Renderer& renderer, const FrameSettings& settings);
+  void agreeOnCubes(Renderer& renderer, const VolumeView& view);
 
   void finishReduction();
   void complete(Image image, bool isTransparent, const Scene& view, const FrameJob& job);

@@ -11,6 +11,8 @@ Camera cameraIn(const Scene& film, const CameraDescription& own, const CameraDes
   CameraDescription resized = own;
   resized.size = given.size;
   if (given == resized) return film.camera;
+  const auto content = [] { return Subject{}; };
+  if (given.flight) return given.resolve(*film.volume, content, 1).front();
   CameraDescription seen;
   seen.look(film.camera);
   seen.size = given.size;
@@ -21,8 +23,8 @@ Camera cameraIn(const Scene& film, const CameraDescription& own, const CameraDes
     seen.verticalFov = given.verticalFov;
     seen.orthographicHeight = given.orthographicHeight;
   }
-  const Camera camera = seen.resolve(film.volume->up, [] { return Subject{}; }, 1).front();
-  const bool isMoved = !given.position && (own.position || given.angles() != own.angles());
+  const Camera camera = seen.resolve(*film.volume, content, 1).front();
+  const bool isMoved = !given.position && (own.position || own.flight || given.angles() != own.angles());
   return isMoved ? movedTo(given.angles(), given.up.value_or(film.volume->up), camera) : camera;
 }
 
@@ -72,7 +74,8 @@ Camera movedTo(glm::dvec2 orbit, glm::dvec3 up, Camera camera) {
 Scene filmWith(const Scene& film, const SceneDescription& own, const SceneDescription& given) {
   Scene seen = film;
   seen.camera = cameraIn(film, own.camera, given.camera);
-  if (given.lighting != own.lighting) seen.lighting = given.lighting.resolve(*film.volume, film.classification, film.camera);
+  if (given.lighting != own.lighting || given.camera.flight != own.camera.flight)
+    seen.lighting = given.resolveLighting(*film.volume, film.classification, film.camera);
   if (film.volume->classificationIsFixed) return seen;
   seen.classification = classificationIn(film, own.classification, given.classification);
   seen.classification.emission = emissionIn(film, own.emission, given.emission);

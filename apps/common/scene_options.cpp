@@ -13,6 +13,7 @@
 #include "apps/common/sequence.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_json.h"
+#include "engine/description/text_values.h"
 #include "engine/volume/blackbody.h"
 
 namespace freevoxels {
@@ -174,6 +175,7 @@ void checkScene(const SceneDescription& description, std::span<const std::string
     if (!proceduralName(volume)) files.push_back(volume);
   if (!proceduralName(description.input.volume)) files.push_back(description.input.volume);
   if (description.lighting.environment) files.push_back(*description.lighting.environment);
+  if (const auto& flight = description.camera.flight; flight && !isInlineJson(*flight)) files.push_back(*flight);
   checkDistinct(files);
 }
 
@@ -222,7 +224,7 @@ void logRemarks(const SceneDescription& description, const Scene& scene) {
     spdlog::warn(
         "the transfer function draws the air around {}, which has other values than it is made for: --window LO..HI moves it over them",
         volume.source);
-  if (!description.camera.up && !description.camera.position && !volume.upReason.empty())
+  if (!description.camera.up && !description.camera.position && !description.camera.flight && !volume.upReason.empty())
     spdlog::info("up is {}, as {}; change it with --up", numberText(volume.up), volume.upReason);
   if (scene.lighting && scene.lighting->environment && scene.lighting->environment->negativeValues > 0)
     spdlog::warn("values of '{}' below 0 count as 0: {} of them", *description.lighting.environment,

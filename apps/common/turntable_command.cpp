@@ -16,20 +16,22 @@ namespace {
 constexpr const char* kTurntableExamples =
     "A run of # in the file name of each OUT becomes the number of the frame, from 0.\n"
     "With --orbit (or neither) the camera turns about +y, its distance the least from which no frame cuts\n"
-    "the volume; a --camera-position turns about the axis through --look-at along --up.\n"
+    "the volume; a --camera-position turns about the axis through --look-at along --up. With --flight it flies\n"
+    "through key frames.\n"
     "Examples:\n"
     "  freevoxels turntable cloud.vdb orbit_####.png --frames 120 --background 0.02,0.03,0.05\n"
     "  freevoxels turntable cloud.vdb orbit_###.exr orbit_###.png --orbit 0,15 --size 1920x1080\n"
     "  freevoxels turntable scan.vdb orbit_###.png --camera-position 300,0,80 --up 0,0,1\n"
     "  freevoxels turntable cloud.vdb orbit_####.png --frames 120 --range 60-119 --skip-existing\n"
+    "  freevoxels turntable cloud.vdb flight_####.png --frames 240 --flight flight.json\n"
     "  freevoxels turntable --scene apps/scenes/cloud.json cloud_###.png\n";
 
 }  // namespace
 
 void TurntableCommand::add(CLI::App& app) {
-  CLI::App* command = app.add_subcommand("turntable", "Draw a full turn around a volume, an image for each frame");
+  CLI::App* command = app.add_subcommand("turntable", "Draw a full turn around a volume, or a flight, an image for each frame");
   options_.add(*command);
-  options_.scene.addField(*command, "frames", fmt::format("Frames of the turn [{}]", kDefaultFrames));
+  options_.scene.addField(*command, "frames", fmt::format("Frames of the turn or the flight [{}]", kDefaultFrames));
   addText(*command, "--range", "A-B:STEP", range_, "Numbers of the frames to draw; A-B, A- and A will do [all]")->group("Sequence");
   options_.addSkipExisting(*command);
   if (options_.group != nullptr)

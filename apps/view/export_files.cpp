@@ -127,8 +127,10 @@ std::string commandOf(const DrawnImage& drawn, const std::string& file) {
   return commandInto("render", optionsOf(sceneInto(drawn, {&file, 1}).resolved(drawn.scene)), file);
 }
 
-std::string turnCommandOf(const DrawnImage& drawn, const std::string& pattern, int frames) {
-  return commandInto("turntable", optionsOf(sceneInto(drawn, {&pattern, 1}).resolvedTurn(drawn.scene, frames)), pattern);
+std::string commandOf(const DrawnImage& drawn, const MovedFrames& moved) {
+  SceneDescription scene = sceneInto(drawn, {&moved.pattern, 1});
+  scene.camera.flight = moved.flight;
+  return commandInto("turntable", optionsOf(scene.resolvedTurn(drawn.scene, moved.frames)), moved.pattern);
 }
 
 void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file) {
@@ -203,16 +205,19 @@ void saveFrames(const Device& device, ImageMaker& maker, ImageRequest request, s
 
 }  // namespace
 
-void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& pattern, int frames,
-              const Progress& progress) {
-  const std::vector<std::string> files = filesOfTurn(pattern, frames);
+void saveMoved(const Device& device, const DrawnImage& drawn, const MovedFrames& moved, const Progress& progress) {
+  const std::vector<std::string> files = filesOfTurn(moved.pattern, moved.frames);
   ImageRequest request = drawn.request;
   request.scene = sceneInto(drawn, files);
+  request.scene.camera.flight = moved.flight;
   checkScene(request.scene, files);
-  const std::vector<Camera> cameras = request.scene.cameras(drawn.scene, frames);
+  const std::vector<FrameView> views = request.scene.views(drawn.scene, moved.frames);
   VolumeCache volumes(request.scene, drawn.scene.volume);
   ImageMaker maker(device, volumes);
-  const auto look = [&](ImageRequest& of, std::size_t frame) { of.scene.camera.look(cameras[frame]); };
+  const auto look = [&](ImageRequest& of, std::size_t frame) {
+    of.scene.camera.look(views[frame].camera);
+    if (!views[frame].lights.empty()) of.scene.lighting.take(views[frame].lights);
+  };
   saveFrames(device, maker, request, files, look, progress);
 }
 
@@ -230,7 +235,6 @@ void saveSequence(const Device& device, const DrawnImage& drawn, const Sequence&
   request.isFrame = true;
   request.number = 1;
   request.film.clear();
-  request.revision = 0;
   checkScene(request.scene, files);
   VolumeCache volumes(kMaxNumberedVoxels);
   ImageMaker maker(device, volumes);

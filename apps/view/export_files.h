@@ -1,6 +1,7 @@
 #pragma once
 // Exports of an image: the files and command lines of `freevoxels render` and `turntable`.
 
+#include <optional>
 #include <string>
 #include <string_view>
 
@@ -15,9 +16,17 @@ std::string wrappedCommand(std::string_view command, std::size_t columns);
 
 /// The command line that makes the image again, into `file`.
 std::string commandOf(const DrawnImage& drawn, const std::string& file);
-/// The command line of a full turn that starts with the image, or, if the camera is automatic, fills all
-/// frames with the volume.
-std::string turnCommandOf(const DrawnImage& drawn, const std::string& pattern, int frames);
+/// Frames that are drawn of a scene with a camera that moves.
+struct MovedFrames {
+  std::string pattern;  ///< of the names of files
+  int frames = 1;
+  /// CameraDescription::flight; else a full turn that starts with the image, or, if the camera is automatic, fills all frames with the
+  /// volume.
+  std::optional<std::string> flight;
+};
+
+/// The command line of these frames.
+std::string commandOf(const DrawnImage& drawn, const MovedFrames& moved);
 
 /// Writes an image of this device with all that `freevoxels render` would write. Fails as that does.
 void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file);
@@ -29,9 +38,8 @@ bool canCopyImages();
 void copyImage(const Device& device, const DrawnImage& drawn);
 /// Writes the scene as `freevoxels render --save-scene` does.
 void saveScene(const DrawnImage& drawn, const std::string& file);
-/// Writes the frames of turnCommandOf's command.
-void saveTurn(const Device& device, const DrawnImage& drawn, const std::string& pattern, int frames,
-              const Progress& progress);
+/// Writes the frames of that command.
+void saveMoved(const Device& device, const DrawnImage& drawn, const MovedFrames& moved, const Progress& progress);
 
 /// Writes an image of each frame of the sequence, with the camera, lights and scales of the image. Frames without anything to draw are the
 /// background.

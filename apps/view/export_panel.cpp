@@ -10,6 +10,7 @@
 
 #include "apps/common/frame_names.h"
 #include "apps/view/export_files.h"
+#include "apps/view/flight_panel.h"
 #include "apps/view/theme.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
@@ -63,15 +64,32 @@ void ExportPanel::askScene() {
   });
 }
 
-void ExportPanel::askTurntable() {
-  dialog_.save("Save turntable: # stands for the digits of a frame's number", turnName_, {".png", ".exr", ".jpg"},
-               [this](const std::string& pattern) {
-                 turnName_ = pattern;
-                 want({[this, pattern, frames = turnFrames_](const DrawnImage& of, const Progress& progress) {
-                         saveTurn(device_, of, pattern, frames, progress);
-                       },
-                       fmt::format("saved {} frames: {}", turnFrames_, pattern)});
-               });
+void ExportPanel::askMoved(const std::optional<std::string>& flight) {
+  dialog_.save(
+      flight ? "Save flight: # stands for the digits of a frame's number" : "Save turntable: # stands for the digits of a frame's number",
+      turnName_, {".png", ".exr", ".jpg"}, [this, flight](const std::string& pattern) {
+        turnName_ = pattern;
+        want({[this, moved = MovedFrames{pattern, turnFrames_, flight}](const DrawnImage& of, const Progress& progress) {
+                saveMoved(device_, of, moved, progress);
+              },
+              fmt::format("saved {} frames: {}", turnFrames_, pattern)});
+      });
+}
+
+void ExportPanel::drawMoved(ViewState& state, const std::optional<std::string>& flight) {
+  ImGui::PushID(flight ? "flight" : "turn");
+  const float half = 0.5f * (ImGui::GetContentRegionAvail().x - ImGui::GetStyle().ItemSpacing.x);
+  if (ImGui::Button(flight ? "Save flight..." : "Save turntable...", {half, 0.0f})) askMoved(flight);
+  hint(flight ? "Writes the frames of the flight through the keys of the panel View"
+              : "Writes an image for each frame of a full turn (Ctrl+T)",
+       flight ? "--flight" : nullptr);
+  ImGui::SameLine();
+  if (ImGui::Button("Copy command", {half, 0.0f}) && state.whole) {
+    ImGui::SetClipboardText(commandOf(*state.whole, MovedFrames{turnName_, turnFrames_, flight}).c_str());
+    state.notice = flight ? "copied the flight's command" : "copied the turntable command";
+  }
+  hint("Copies the command line that renders these frames");
+  ImGui::PopID();
 }
 
 void ExportPanel::askSequence(const Sequence& sequence) {
@@ -118,18 +136,12 @@ void ExportPanel::draw(ViewState& state) {
     hint("Writes an image of each frame, with this camera");
   }
   OutputDescription& output = state.scene.output;
-  if (ImGui::TreeNode("Turntable")) {
+  if (ImGui::TreeNode("Turntable and flight###Turntable")) {
     ImGui::InputInt(beginRow("Frames"), &turnFrames_, 1, 10);
-    hint("Of a full turn", "--frames");
+    hint("Of a full turn or a flight", "--frames");
     turnFrames_ = std::clamp(turnFrames_, 1, kMaximumFrames);
-    if (ImGui::Button("Save turntable...", {half, 0.0f})) askTurntable();
-    hint("Writes an image for each frame of a full turn (Ctrl+T)");
-    ImGui::SameLine();
-    if (ImGui::Button("Copy command##turn", {half, 0.0f}) && state.whole) {
-      ImGui::SetClipboardText(turnCommandOf(*state.whole, turnName_, turnFrames_).c_str());
-      state.notice = "copied the turntable command";
-    }
-    hint("Copies the command line that renders these frames");
+    drawMoved(state, std::nullopt);
+    if (const std::optional<std::string> flight = flightOf(state)) drawMoved(state, flight);
     ImGui::TreePop();
   }
   if (ImGui::TreeNode("Command line and .exr")) {

@@ -26,7 +26,7 @@ class ExportPanel {
   /// These ask for a file name. What is asked for is written when the image is complete.
   void askImage();
   void askScene();
-  void askTurntable();
+  void askTurntable() { askMoved(std::nullopt); }
   void askSequence(const Sequence& sequence);
   /// Copies the complete image to the clipboard, where a program for that is installed (wl-copy or xclip); otherwise its command
   /// line, and says so.
@@ -48,6 +48,8 @@ class ExportPanel {
   };
 
   void want(Task task);
+  void askMoved(const std::optional<std::string>& flight);
+  void drawMoved(ViewState& state, const std::optional<std::string>& flight);
   void drawSize(glm::ivec2 window);
 
   const Device& device_;

@@ -50,6 +50,18 @@ void openTransferFunction(ViewState& state, const std::string& file) {
   state.changed = true;
 }
 
+bool isFlight(const std::string& file) {
+  if (!hasExtension(file, ".json")) return false;
+  const nlohmann::json json = readJson("scene, transfer function or flight", file);
+  return json.is_object() && json.contains("keys");
+}
+
+void openFlight(ViewState& state, const std::string& file) {
+  state.flight = readFlight(file);
+  state.retoned = true;
+  state.notice = fmt::format("{} keys of a flight: the panel View plays it", state.flight.keys.size());
+}
+
 void openVolume(ViewState& state, const std::string& file) {
   SceneDescription scene = state.scene;
   scene.input = {.volume = file};
@@ -87,13 +99,15 @@ void openFile(ViewState& state, const std::string& opened) {
   if (!named && !std::filesystem::exists(file))
     fail(ErrorKind::Input, "cannot read '{}': there is no such file; check its name", file);
   if (!named && isTransferFunction(file)) return openTransferFunction(state, file);
+  if (!named && isFlight(file)) return openFlight(state, file);
   if (named || hasExtension(file, ".vdb") || InputDescription{.volume = file}.kind() != VolumeKind::OpenVdb) return openVolume(state, file);
   if (hasExtension(file, ".exr") || hasExtension(file, ".hdr")) {
     state.scene.lighting.environment = file;
     state.changed = true;
   } else if (!hasExtension(file, ".json")) {
     fail(ErrorKind::Input,
-         "'{}' cannot be shown: open a volume (.vdb, .fvx or a scan), a scene or a transfer function (.json, .vp, .xml, .1dt, .itf, .tfi), "
+         "'{}' cannot be shown: open a volume (.vdb, .fvx or a scan), a scene, a flight or a transfer function (.json, .vp, .xml, .1dt, "
+         ".itf, .tfi), "
          "or the light around (.exr, .hdr)",
          file);
   } else {
@@ -112,7 +126,8 @@ bool mayBeFrame(const std::filesystem::path& file) {
 }
 
 bool isWorthRemembering(const std::string& file) {
-  return !proceduralName(file) && !hasExtension(file, ".exr") && !hasExtension(file, ".hdr") && !isTransferFunction(file);
+  return !proceduralName(file) && !hasExtension(file, ".exr") && !hasExtension(file, ".hdr") && !isTransferFunction(file) &&
+         !isFlight(file);
 }
 
 }  // namespace freevoxels

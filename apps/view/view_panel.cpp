@@ -99,7 +99,7 @@ void addBookmark(ViewState& state, SessionStore& store) {
   state.notice = fmt::format("added the camera as View {}", state.bookmarks.size());
 }
 
-void drawViewPanel(ViewState& state, SessionStore& store) {
+void drawViewPanel(ViewState& state, SessionStore& store, FlightPanel& flight) {
   if (!panelHeader("View", state.camera.has_value(), true)) return;
   ImGui::PushID("view");
   drawBackground(state);
@@ -108,6 +108,7 @@ void drawViewPanel(ViewState& state, SessionStore& store) {
     drawBookmarks(state, store);
     ImGui::TreePop();
   }
+  flight.draw(state);
   ImGui::PopID();
 }
 

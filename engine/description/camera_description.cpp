@@ -1,3 +1,7 @@
+#include <algorithm>
+#include <cmath>
+
+#include "engine/description/flight_description.h"
 #include "engine/description/scene_description.h"
 #include "engine/scene/orbit.h"
 
@@ -14,6 +18,11 @@ Camera given(const CameraDescription& description, glm::dvec3 upwards = {0.0, 1.
   camera.orthographic = description.orthographicHeight.has_value();
   camera.orthographicHeight = description.orthographicHeight.value_or(camera.orthographicHeight);
   return camera;
+}
+
+/// An axis of the world that is not along the view.
+glm::dvec3 axisAcross(glm::dvec3 view) {
+  return std::abs(view.y) > std::abs(view.x) ? glm::dvec3(1.0, 0.0, 0.0) : glm::dvec3(0.0, 1.0, 0.0);
 }
 
 }  // namespace
@@ -34,23 +43,32 @@ std::shared_ptr<const Holdout> CameraDescription::readHoldout() const {
 }
 
 void CameraDescription::check() const {
-  if (position && lookAt) {
-    checkCamera(given(*this));
+  if (flight) {
+    readFlight(*flight);
     return;
   }
-  Camera lens = given(*this);
-  lens.position = glm::dvec3(0.0, 0.0, 1.0);
-  lens.lookAt = glm::dvec3(0.0);
-  lens.up = up && *up == glm::dvec3(0.0) ? *up : glm::dvec3(0.0, 1.0, 0.0);
-  checkCamera(lens);
+  Camera camera = given(*this);
+  const bool isPlaced = position && lookAt;
+  if (!isPlaced) {
+    camera.position = glm::dvec3(0.0, 0.0, 1.0);
+    camera.lookAt = glm::dvec3(0.0);
+  }
+  // The up direction of the volume, or the view, is not known here.
+  if (!up || (!isPlaced && *up != glm::dvec3(0.0))) camera.up = axisAcross(camera.lookAt - camera.position);
+  checkCamera(camera);
 }
 
 glm::dvec2 CameraDescription::angles() const {
   return orbit.value_or(glm::dvec2(kDefaultAzimuth, kDefaultElevation));
 }
 
-std::vector<Camera> CameraDescription::resolve(glm::dvec3 upOfVolume, const std::function<Subject()>& content, int frameCount) const {
-  const Camera base = given(*this, upOfVolume);
+std::vector<Camera> CameraDescription::resolve(const Volume& volume, const std::function<Subject()>& content, int frameCount) const {
+  if (flight) {
+    std::vector<Camera> cameras;
+    for (FrameView& view : flightViews(*flight, volume, frameCount)) cameras.push_back(view.camera);
+    return cameras;
+  }
+  const Camera base = given(*this, volume.up);
   if (position && lookAt) {
     checkCamera(base);
     return orbitAboutUp(base, frameCount);

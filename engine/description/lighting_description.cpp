@@ -29,6 +29,20 @@ double defaultIntensity(const Light& light, const Volume& volume) {
   return kDefaultIrradiance * std::max(glm::dot(toLight, toLight), glm::dot(diagonal, diagonal));
 }
 
+std::vector<Light> resolvedLights(std::span<const LightingDescription::GivenLight> given, const Volume& volume) {
+  std::vector<Light> lights;
+  for (const auto& [light, hasIntensity] : given) {
+    lights.push_back(light);
+    if (!hasIntensity) lights.back().intensity = defaultIntensity(light, volume);
+  }
+  return lights;
+}
+
+void LightingDescription::take(std::span<const Light> given) {
+  lights.clear();
+  for (const Light& light : given) lights.push_back({.light = light, .hasIntensity = true});
+}
+
 void LightingDescription::check() const {
   const bool withoutLights = lights.empty() && hasLight();
   if (attenuation && withoutLights)
@@ -66,10 +80,7 @@ std::optional<Lighting> LightingDescription::resolve(const Volume& volume, const
     around->intensity = environmentIntensity.value_or(around->intensity);
     lighting.environment = std::move(around);
   }
-  for (const GivenLight& given : lights) {
-    lighting.lights.push_back(given.light);
-    if (!given.hasIntensity) lighting.lights.back().intensity = defaultIntensity(given.light, volume);
-  }
+  if (!lights.empty()) lighting.lights = resolvedLights(lights, volume);
   if (!lighting.lights.empty()) lighting.surface = surfaceOf(volume, classification);
   return lighting;
 }

@@ -4,6 +4,7 @@
 
 #include "engine/core/error.h"
 #include "engine/description/added_volume.h"
+#include "engine/description/flight_description.h"
 #include "engine/description/scene_fields.h"
 #include "engine/octree/hierarchy_layout.h"
 #include "engine/octree/volume_limits.h"
@@ -72,7 +73,7 @@ LightingDescription resolvedLighting(const LightingDescription& given, const std
                                   .phaseG = lighting->phaseG,
                                   .scattering = lighting->scattering,
                                   .attenuation = given.attenuation};
-  for (const Light& light : lighting->lights) description.lights.push_back({.light = light, .hasIntensity = true});
+  description.take(lighting->lights);
   if (!lighting->lights.empty()) description.shading = lighting->surface > 0.0 ? Shading::Gradient : Shading::Scatter;
   if (lighting->surface > 0.0) description.surface = lighting->surface;
   if (!lighting->environment) return description;
@@ -102,6 +103,7 @@ MethodDescription resolvedMethod(const MethodDescription& given) {
                            .code = table.code,
                            .pathLengthCorrection = table.pathLengthCorrection,
                            .lod = given.lod.value_or(double(frame.lod)),
+                           .quality = frame.quality,
                            .hierarchyFilter = table.filter};
   if (frame.gathers()) {
     result.cullThreshold = given.culling.value_or(true) ? given.cullThreshold.value_or(double(frame.gather().endTransmittance)) : 0.0;
@@ -172,6 +174,11 @@ void checkSlice(const SceneDescription& scene) {
          Parameter("draw", "splats"));
 }
 
+/// The lighting of the first frame of a scene.
+LightingDescription litBy(const SceneDescription& scene) {
+  return scene.camera.flight ? lightingOfFlight(scene.lighting, *scene.camera.flight) : scene.lighting;
+}
+
 }  // namespace
 
 void SceneDescription::check() const {
@@ -194,7 +201,7 @@ void SceneDescription::check() const {
   checkSlice(*this);
   checkLayers(*this, output.aovs);
   camera.check();
-  lighting.check();
+  litBy(*this).check();
 }
 
 Volume SceneDescription::readVolume(std::uint64_t maximumVoxels, int level, const Progress& progress, bool isFrame) const {
@@ -232,7 +239,7 @@ BakedNeed SceneDescription::needOf(const fvx::FvxFile& file, int frameCount) con
   int level = file.levels() - 1;
   for (const Camera& one : cameras(outline, classified, frameCount, added.empty() ? std::vector<SceneVolume>() : openAddedVolumes(*this))) {
     const PixelRays rays = pixelRays(one, camera.size, outline.indexToWorld);
-    level = std::min(level, detailRule(hierarchy, rays, camera.size, double(frame.lod)).finest);
+    level = std::min(level, detailRule(hierarchy, rays, camera.size, frame.blockPixels()).finest);
   }
   // One level finer than what is drawn, as the footprints of what is drawn are those of the opened level's voxels.
   return {.level = std::max(level - 1, 0), .isRead = isRead};
@@ -256,7 +263,19 @@ std::vector<Camera> SceneDescription::cameras(const Volume& volume, const Classi
     all.centre = 0.5 * (low + high);
     return all;
   };
-  return camera.resolve(volume.up, content, frameCount);
+  return camera.resolve(volume, content, frameCount);
+}
+
+std::vector<FrameView> SceneDescription::views(const Scene& scene, int frameCount) const {
+  if (camera.flight && !method.slice) return flightViews(*camera.flight, *scene.volume, frameCount);
+  std::vector<FrameView> views;
+  for (const Camera& one : cameras(scene, frameCount)) views.push_back({.camera = one, .lights = {}});
+  return views;
+}
+
+void Scene::show(const FrameView& view) {
+  camera = view.camera;
+  if (lighting && !view.lights.empty()) lighting->lights = view.lights;
 }
 
 std::vector<SceneVolume> Scene::volumes(std::shared_ptr<const VolumeSource> source) const {
@@ -289,7 +308,7 @@ void SceneDescription::resolveView(Scene& scene) const {
 
 std::optional<Lighting> SceneDescription::resolveLighting(const Volume& volume, const Classification& classified,
                                                           const Camera& seenBy) const {
-  return method.showsValues() ? std::nullopt : lighting.resolve(volume, classified, seenBy);
+  return method.showsValues() ? std::nullopt : litBy(*this).resolve(volume, classified, seenBy);
 }
 
 Scene SceneDescription::resolveLike(const Scene& other, std::shared_ptr<const Volume> volume) const {
@@ -326,8 +345,9 @@ SceneDescription SceneDescription::resolved(const Scene& scene) const {
 
 SceneDescription SceneDescription::resolvedTurn(const Scene& scene, int frameCount) const {
   SceneDescription result = resolved(scene);
+  if (camera.flight) result.camera = camera;
   result.camera.frames = frameCount;
-  if (camera.position) return result;
+  if (camera.position || camera.flight) return result;
   result.camera.position.reset();
   result.camera.lookAt = camera.lookAt;
   result.camera.orbit = camera.angles();

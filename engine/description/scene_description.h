@@ -98,22 +98,24 @@ struct CameraDescription {
   std::optional<double> verticalFov;         ///< above 0 and below 180; else 35
   std::optional<double> orthographicHeight;  ///< above 0; makes the projection orthographic
   std::optional<glm::dvec2> orbit;  ///< azimuth and elevation of the eye around the content; else kDefaultAzimuth and -Elevation
+  /// A file, or JSON that begins with {, of key frames (flight_description.h) that take the place of all of the above.
+  std::optional<std::string> flight;
   glm::ivec2 size{1024, 1024};      ///< pixels, 1 to kMaxImageEdge each
   std::optional<int> frames;        ///< of a turn, 1 to kMaximumFrames; else kDefaultFrames
   std::optional<std::string> holdout;  ///< an .exr of the depths of surfaces that this camera sees in front (readHoldout)
 
-  /// Gives everything but the size, the frames and the holdout as this camera has it.
+  /// Gives everything but the size, the frames and the holdout as this camera has it, in place of a flight as well.
   void look(const Camera& from);
   /// Reads the holdout; null if there is none. Fails with ErrorKind::Input, and unless it has the size of the image.
   std::shared_ptr<const Holdout> readHoldout() const;
-  /// Fails for a camera that is wrong for every volume.
+  /// Fails for a camera that is wrong for every volume, and as readFlight().
   void check() const;
   /// The direction of the eye around the content.
   glm::dvec2 angles() const;
-  /// The cameras of a full turn in equal steps about the axis through the look-at point along `up`. What is not given is chosen so
-  /// that the content fills the image, from one distance for all frames, upright as the volume says. `content` is asked for if it is
-  /// needed.
-  std::vector<Camera> resolve(glm::dvec3 upOfVolume, const std::function<Subject()>& content, int frameCount) const;
+  /// The cameras of a flight (flightViews); else those of a full turn in equal steps about the axis through the look-at point along `up`.
+  /// What is not given is chosen so that the content fills the image, from one distance for all frames, upright as the volume says.
+  /// `content` is asked for if it is needed.
+  std::vector<Camera> resolve(const Volume& volume, const std::function<Subject()>& content, int frameCount) const;
 
   bool operator==(const CameraDescription&) const = default;
 };
@@ -219,6 +221,8 @@ struct LightingDescription {
   std::optional<double> surface;                 ///< Lighting::surface where there are surfaces, 0 to 1; else 1
   bool unlit = false;                            ///< no lighting, whatever the other fields say
 
+  /// Gives lights, with their intensities, in place of others.
+  void take(std::span<const Light> given);
   bool hasLight() const { return !lights.empty() || ambient || environment; }
   /// Fails for fields that have no effect without others.
   void check() const;
@@ -233,6 +237,8 @@ struct LightingDescription {
 /// The intensity of a light that gives none: a position has kDefaultIrradiance in the middle of the volume's box, or at half its
 /// diagonal from the light, whichever is farther.
 double defaultIntensity(const Light& light, const Volume& volume);
+/// The lights, each with its intensity.
+std::vector<Light> resolvedLights(std::span<const LightingDescription::GivenLight> given, const Volume& volume);
 
 /// A volume besides that of `input`: how it looks is its own, but what lights do with surfaces (Shading).
 struct AddedVolume {
@@ -258,6 +264,7 @@ struct MethodDescription {
   std::optional<AttenuationCode> code;
   std::optional<bool> pathLengthCorrection, gradient;
   std::optional<double> lod;  ///< pixels, 0 to 10^6
+  std::optional<double> quality;  ///< FrameSettings::quality, DraftQuality::kLeast to 1
   std::optional<bool> culling;
   std::optional<double> cullThreshold;  ///< transmittance, 0 to 1
   std::optional<HierarchyFilter> hierarchyFilter;
@@ -297,6 +304,12 @@ struct OutputDescription {
   bool operator==(const OutputDescription&) const = default;
 };
 
+/// What one of several frames of a scene shows.
+struct FrameView {
+  Camera camera;
+  std::vector<Light> lights;  ///< in place of the scene's, which stay if there are none
+};
+
 /// A resolved description: what images are drawn of.
 struct Scene {
   std::shared_ptr<const Volume> volume;
@@ -307,6 +320,8 @@ struct Scene {
 
   /// All volumes: `source` is that of `volume`.
   std::vector<SceneVolume> volumes(std::shared_ptr<const VolumeSource> source) const;
+  /// Takes the camera of a frame and, unless it is unlit, its lights.
+  void show(const FrameView& view);
 };
 
 /// What frames need of a baked file.
@@ -346,6 +361,9 @@ struct SceneDescription {
   std::vector<Camera> cameras(const Scene& scene, int frameCount = 1) const {
     return cameras(*scene.volume, scene.classification, frameCount, scene.added);
   }
+  /// What each frame of a turn or a flight shows: the same cameras, and the lights of a flight that moves them. The lights of the first
+  /// frame are those of resolve().
+  std::vector<FrameView> views(const Scene& scene, int frameCount) const;
   /// Reads the other files and resolves everything.
   Scene resolve(std::shared_ptr<const Volume> volume) const;
   /// The two parts of resolve(): classification, and camera and light. `scene` must have the other part.
@@ -359,7 +377,7 @@ struct SceneDescription {
   /// A description that gives everything as it was resolved, so that it does not depend on the volume's values or on defaults.
   SceneDescription resolved(const Scene& scene) const;
   /// The same for the turn of which `scene` has the first camera: the orbit stands in place of a position that was not given, since
-  /// a turn has another distance than its first frame alone.
+  /// a turn has another distance than its first frame alone. A flight stays what it is.
   SceneDescription resolvedTurn(const Scene& scene, int frameCount) const;
 
   /// The channels that are drawn: those that are given, or those that a scan shows. Reads the scan's header.

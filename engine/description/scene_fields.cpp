@@ -10,6 +10,7 @@
 #include "engine/description/label_words.h"
 #include "engine/description/scene_field_codecs.h"
 #include "engine/description/text_values.h"
+#include "engine/scene/draft_quality.h"
 
 namespace freevoxels {
 
@@ -150,6 +151,8 @@ void addCamera(std::vector<SceneField>& fields) {
   section.add("up", &View::up, numbers<glm::dvec3>({.form = "X,Y,Z"}));
   section.add("fov", &View::verticalFov, numbers<double>({.form = "DEG"}));
   section.add("orthographic", &View::orthographicHeight, numbers<double>({.form = "HEIGHT"})).excludes = {"fov"};
+  section.add("flight", &View::flight, text(Kind::InlineJson, "FILE.json")).excludes = {"camera-position", "orbit", "look-at", "up", "fov",
+                                                                                        "orthographic"};
   section.add("size", &View::size, extent<glm::ivec2>("WxH", kMaxImageEdge));
   section.add("frames", &View::frames, numbers<int>({.form = "N", .range = {1.0, double(kMaximumFrames)}, .whole = true}));
   section.add("holdout", &View::holdout, text(Kind::File, "DEPTH.exr"));
@@ -242,7 +245,7 @@ void addMethod(std::vector<SceneField>& fields) {
   Section<Method> section(fields, "method", &SceneDescription::method);
   section.add("mode", &Method::mode, words(kModeWords));
   section.add("slice", &Method::slice, Codec<SlicePlane>{.form = kSliceForm, .read = readSlicePlane, .text = slicePlaneText}).excludes = {
-      "mode", "iso", "add", "orbit", "camera-position", "look-at", "up", "fov", "orthographic", "holdout"};
+      "mode", "iso", "add", "orbit", "camera-position", "look-at", "up", "fov", "orthographic", "flight", "holdout"};
   section.add("annotate", &Method::annotate, truth(Kind::Flag));
   section.add("composite", &Method::composite, words(kCompositeWords));
   section.add("draw", &Method::draw, words(kDrawWords));
@@ -252,6 +255,7 @@ void addMethod(std::vector<SceneField>& fields) {
   section.add("path-length-correction", &Method::pathLengthCorrection, truth(Kind::Switch));
   section.add("gradient", &Method::gradient, truth(Kind::Switch));
   section.add("lod", &Method::lod, numbers<double>({.form = "PIXELS", .range = {0.0, 1e6}}));
+  section.add("quality", &Method::quality, numbers<double>({.form = "Q", .range = {DraftQuality::kLeast, 1.0}}));
   section.add("culling", &Method::culling, truth(Kind::Switch));
   section.add("cull-threshold", &Method::cullThreshold, numbers<double>({.form = "TRANSMITTANCE", .range = kUnit}));
   section.add("hierarchy-filter", &Method::hierarchyFilter, words(kHierarchyFilterWords));

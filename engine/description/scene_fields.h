@@ -38,20 +38,21 @@ inline const Words<PngBits> kPngBitsWords{{"8", "16"}};
 
 struct SceneField {
   enum class Kind {
-    Value,     ///< numbers or words
-    Channel,   ///< how a channel is drawn (label_words.h), which may name a transfer function
-    Keys,      ///< KEY=VALUE with commas between them
-    Volumes,   ///< another volume: a file with KEY=VALUE behind it, or JSON that begins with {
-    Name,      ///< a name, whatever it looks like
-    Volume,    ///< a file, or procedural:NAME
-    File,      ///< a file
-    Function,  ///< a transfer function: a file, FILE:NAME, a preset, or JSON that begins with {
-    Flag,      ///< "true" or "false", which is that of a field that is not given
-    Switch,    ///< "true" or "false"
+    Value,       ///< numbers or words
+    Channel,     ///< how a channel is drawn (label_words.h), which may name a transfer function
+    Keys,        ///< KEY=VALUE with commas between them
+    Volumes,     ///< another volume: a file with KEY=VALUE behind it, or JSON that begins with {
+    Name,        ///< a name, whatever it looks like
+    Volume,      ///< a file, or procedural:NAME
+    File,        ///< a file
+    Function,    ///< a transfer function: a file, FILE:NAME, a preset, or JSON that begins with {
+    InlineJson,  ///< a file of JSON, or JSON that begins with {
+    Flag,        ///< "true" or "false", which is that of a field that is not given
+    Switch,      ///< "true" or "false"
   };
   std::string section, name;  ///< of the scene file; the name is also that of the Parameter
   Kind kind = Kind::Value;
-  std::string form;  ///< of the text: "X,Y,Z"
+  std::string form;          ///< of the text: "X,Y,Z"
   bool repeated = false;     ///< whether there may be several texts
   bool standsAlone = false;  ///< whether the text may be empty, or kNone, which the command line has as --no-NAME
   /// Names of fields with which this one cannot be given, and of those of weaker sources that it replaces.
@@ -65,7 +66,7 @@ struct SceneField {
 
   /// The key in a scene file: "lights" for "light".
   std::string key() const { return !repeated ? name : plural.empty() ? name + "s" : plural; }
-  bool isFile() const { return kind == Kind::Volume || kind == Kind::File || kind == Kind::Function; }
+  bool isFile() const { return kind == Kind::Volume || kind == Kind::File || kind == Kind::Function || kind == Kind::InlineJson; }
   bool isOrExcludes(const SceneField& other) const;
 };
 

@@ -12,6 +12,7 @@
 #include "engine/core/nearest_name.h"
 #include "engine/core/printable.h"
 #include "engine/description/added_volume.h"
+#include "engine/description/label_words.h"
 #include "engine/description/text_values.h"
 #include "engine/volume/transfer_source.h"
 
@@ -101,7 +102,8 @@ std::string fieldText(const SceneField& field, const Json& value, const fs::path
   if (!field.isFile() && (isNumbers(value) || isPair(field, value))) return numbersText(field, value);
   if (value.is_object() && field.kind == Kind::Keys)
     if (const std::string text = keysText(field, value); !text.empty()) return text;
-  if (value.is_object() && field.kind == Kind::Function) return value.dump(-1, ' ', false, Json::error_handler_t::replace);
+  if (value.is_object() && (field.kind == Kind::Function || field.kind == Kind::InlineJson))
+    return value.dump(-1, ' ', false, Json::error_handler_t::replace);
   fail(ErrorKind::Input, "{} takes {}, not {}", name, field.form, inShort(value));
 }
 

@@ -16,6 +16,10 @@ namespace freevoxels::test {
 namespace {
 
 constexpr const char* kSmallTurn = " --resolution 24 --size 48x36 ";
+constexpr const char* kFlight = R"({"keys": [
+    {"time": 0, "camera-position": [1.5, 0.5, 2], "look-at": [0, 0, 0], "light": [{"direction": [1, 1, 1], "intensity": 8}]},
+    {"time": 1, "camera-position": [0, 0.4, 1.6], "look-at": [0, 0.1, 0], "up": [0.2, 1, 0], "fov": 50},
+    {"time": 3, "camera-position": [-2, 0.3, 0.2], "look-at": [0, 0, 0], "light": [{"direction": [-1, 1, 0.5], "intensity": 8}]}]})";
 
 class TurntableCommand : public CommandTest {
  protected:
@@ -157,6 +161,58 @@ TEST_F(TurntableCommand, APositionTurnsAboutUp) {
   const glm::dvec3 expected[] = {{2, 3, 1}, {-2.5, 1.5, 1}, {-1, -3, 1}, {3.5, -1.5, 1}};
   for (int i = 0; i < 4; ++i)
     EXPECT_LT(glm::length(vectorOf(std::to_string(i) + ".exr", "camera-position") - expected[i]), 1e-9) << i;
+}
+
+TEST_F(TurntableCommand, AFlightPassesThroughItsKeysWithItsLights) {
+  writeBytes(folder / "flight.json", kFlight);
+  turn("@#.exr --frames 4 --float --flight @flight.json");
+  const glm::dvec3 places[] = {{1.5, 0.5, 2.0}, {0.0, 0.4, 1.6}, {}, {-2.0, 0.3, 0.2}};
+  for (const int key : {0, 1, 3})
+    EXPECT_LT(glm::length(vectorOf(fmt::format("{}.exr", key), "camera-position") - places[key]), 1e-12) << key;
+  const std::string lights[] = {exrAttribute(readBytes(folder / "0.exr"), "freevoxels:light"),
+                                exrAttribute(readBytes(folder / "2.exr"), "freevoxels:light")};
+  EXPECT_NE(lights[0], lights[1]);
+  for (const char* name : {"0.exr", "1.exr", "2.exr", "3.exr"}) {
+    const std::string frame = readBytes(folder / name);
+    expectSuccess(runFreevoxels(recordedCommand(frame, folder / "again.exr")));
+    EXPECT_TRUE(frame == readBytes(folder / "again.exr")) << name;
+  }
+  turn("@part#.exr --frames 4 --float --range 2 --flight @flight.json");
+  EXPECT_TRUE(readBytes(folder / "part2.exr") == readBytes(folder / "2.exr"));
+}
+
+TEST_F(TurntableCommand, OneFrameOfAFlightIsItsFirstKey) {
+  writeBytes(folder / "flight.json", kFlight);
+  turn("@#.exr --frames 1 --float --flight @flight.json");
+  expectSuccess(run(std::string("render procedural:cloud @r.exr --float --flight @flight.json") + kSmallTurn));
+  expectSuccess(run(std::string("render procedural:cloud @same.exr --float --camera-position 1.5,0.5,2 --look-at 0,0,0 --light "
+                                "direction=1,1,1,intensity=8") +
+                    kSmallTurn));
+  EXPECT_TRUE(readBytes(folder / "0.exr") == readBytes(folder / "r.exr"));
+  EXPECT_TRUE(readBytes(folder / "same.exr") == readBytes(folder / "r.exr"));
+}
+
+TEST_F(TurntableCommand, ASavedFlightIsDrawnAgain) {
+  std::filesystem::create_directories(folder / "flights");
+  writeBytes(folder / "flights/flight.json", kFlight);
+  turn("@a#.exr --frames 3 --float --flight @flights/flight.json --save-scene @flights/s.json");
+  EXPECT_EQ(nlohmann::json::parse(readBytes(folder / "flights/s.json")).at("camera").at("flight"), "flight.json");
+  expectSuccess(run("turntable --scene @flights/s.json @b#.exr --quiet --float"));
+  for (const char* frame : {"0", "1", "2"})
+    EXPECT_EQ(readExr(folder / fmt::format("a{}.exr", frame)).pixels, readExr(folder / fmt::format("b{}.exr", frame)).pixels) << frame;
+}
+
+TEST_F(TurntableCommand, WrongFlightsAreRefused) {
+  writeBytes(folder / "flight.json", kFlight);
+  writeBytes(folder / "short.json", R"({"keys": []})");
+  const auto refuses = [&](const std::string& options, ExitCode code, const std::string& mention) {
+    expectCleanRefusal("turntable procedural:cloud @n#.png --frames 2 " + options, code, mention);
+  };
+  refuses("--flight @none.json", ExitCode::Input, "none.json");
+  refuses("--flight @short.json", ExitCode::Input, "has 0 keys, and a flight takes 2 to 10000");
+  for (const char* other : {"--orbit 1,2", "--camera-position 1,2,3", "--look-at 1,2,3", "--up 0,1,0", "--fov 30", "--orthographic 2"})
+    refuses(std::string("--flight @flight.json ") + other, ExitCode::Usage, "--flight");
+  refuses("--flight @flight.json --save-scene @flight.json", ExitCode::Usage, "same file");
 }
 
 TEST_F(TurntableCommand, TimingsSumTheFrames) {

@@ -57,6 +57,7 @@ SceneDescription everything(const TemporaryFolder& folder) {
                   .pathLengthCorrection = false,
                   .gradient = true,
                   .lod = 0.0,
+                  .quality = 0.5,
                   .culling = false,
                   .cullThreshold = 0.001,
                   .hierarchyFilter = HierarchyFilter::Arithmetic};
@@ -128,6 +129,12 @@ SceneDescription slice() {
   return scene;
 }
 
+SceneDescription flight(const TemporaryFolder& folder) {
+  SceneDescription scene;
+  scene.camera.flight = (folder / "flight.json").string();
+  return scene;
+}
+
 nlohmann::json jsonIn(const std::filesystem::path& file) {
   return nlohmann::json::parse(readBytes(file));
 }
@@ -137,7 +144,7 @@ nlohmann::json jsonIn(const std::filesystem::path& file) {
 TEST(SceneJson, DescriptionsSurviveTheWayToAFileAndBack) {
   const TemporaryFolder folder;
   for (const SceneDescription& scene :
-       {everything(folder), others(folder), labelled(), dyed(folder), surface(), slice(), SceneDescription{}}) {
+       {everything(folder), others(folder), labelled(), dyed(folder), surface(), slice(), flight(folder), SceneDescription{}}) {
     writeScene(folder / "s.json", scene);
     EXPECT_EQ(readScene(folder / "s.json"), scene) << readBytes(folder / "s.json");
   }
@@ -177,7 +184,7 @@ TEST(SceneJson, AKeyWithoutEffectOfAnEarlierVersionIsReadWithOneSentence) {
 
 TEST(SceneJson, TheTestsAboveHaveEveryField) {
   const TemporaryFolder folder;
-  const std::array scenes{everything(folder), others(folder), labelled(), dyed(folder), surface(), slice()};
+  const std::array scenes{everything(folder), others(folder), labelled(), dyed(folder), surface(), slice(), flight(folder)};
   for (const SceneField& field : sceneFields())
     EXPECT_TRUE(std::ranges::any_of(scenes, [&](const SceneDescription& scene) { return !field.texts(scene).empty(); }))
         << field.section << "." << field.name;

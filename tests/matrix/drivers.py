@@ -50,7 +50,7 @@ class CommandLine(Files):
     def text(name, value):
         """The text of an option's value."""
         if isinstance(value, dict):
-            if name in ("transfer-function", "add"):
+            if name in ("transfer-function", "add", "flight"):
                 return json.dumps(value)
             return ",".join(f"{key}={CommandLine.text(key, one)}" for key, one in value.items())
         if isinstance(value, list):

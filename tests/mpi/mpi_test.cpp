@@ -1,5 +1,7 @@
 // freevoxels-mpi, started by Open MPI's mpirun as on a cluster, all ranks on this machine.
 
+#include <fmt/format.h>
+
 #include <csignal>
 #include <cstdlib>
 #include <sstream>
@@ -129,6 +131,24 @@ TEST_F(MpiTest, FramesAreSplitOverGroupsOfRanks) {
     expected += (folder / name).string() + "\n";
   }
   EXPECT_EQ(result.out, expected);  // once, by rank 0
+}
+
+TEST_F(MpiTest, AFlightIsTheSameForAnyNumberOfRanksAndOneForAllOfThem) {
+  for (const char* last : {"0", "1"})
+    writeBytes(folder / fmt::format("{}.json", last), fmt::format(R"({{"keys": [
+        {{"time": -1, "camera-position": [1, 1, 2], "look-at": [0, 0, 0], "light": [{{"direction": [1, 1, 1]}}]}},
+        {{"time": 2, "camera-position": [-1, {}, 2], "look-at": [0, 0, 0], "light": [{{"direction": [-1, 1, 1]}}]}}]}})",
+                                                                  last));
+  const std::string turn = "turntable procedural:cloud --resolution 24 --size 48x36 --frames 3 --quiet ";
+  expectSuccess(run(turn + "@one_#.png --share 0/1 --flight @0.json"));
+  expectSuccess(runMpi(2, turn + "@two_#.png --flight @0.json"));
+  for (const char* frame : {"0", "1", "2"})
+    EXPECT_EQ(readBytes(folder / fmt::format("two_{}.png", frame)), readBytes(folder / fmt::format("one_{}.png", frame))) << frame;
+  std::string line = "exec " FREEVOXELS_MPI_PROGRAM;
+  for (const std::string& word : words(turn + "@other_#.png --flight @$OMPI_COMM_WORLD_RANK.json")) line += " " + word;
+  const ProgramResult result = runScript(2, line);
+  EXPECT_EQ(result.exitCode, int(ExitCode::Input)) << result.err;
+  EXPECT_NE(result.err.find("another flight"), std::string::npos) << result.err;
 }
 
 TEST_F(MpiTest, VerboseTellsLeastMeanAndMostOfEachStage) {
