@@ -110,7 +110,7 @@ bool drawTicks(std::optional<VoxelBox>& box, std::optional<ClipPlane>& plane, co
 }  // namespace
 
 void drawClipping(ViewState& state) {
-  if (!state.latest || !state.camera || !state.latest->whole || state.latest->scene.volume->classification) return;
+  if (!state.latest || !state.camera || !state.latest->whole) return;
   std::optional<VoxelBox> box = state.scene.input.clipBox;
   std::optional<ClipPlane> plane = state.scene.input.clipPlane;
   bool changed = drawTicks(box, plane, state);

@@ -5,7 +5,7 @@
 
 namespace freevoxels {
 
-/// Draws nothing where the volume cannot be clipped. `state` has a camera if it has an image.
+/// Draws nothing before there is an image.
 void drawClipping(ViewState& state);
 
 }  // namespace freevoxels

@@ -10,15 +10,18 @@
 #include <cstdlib>
 #include <ctime>
 #include <set>
+#include <span>
 #include <utility>
 
 #include "apps/common/sequence.h"
 #include "apps/view/keys.h"
 #include "apps/view/opened_file.h"
+#include "apps/view/sample_images.h"
 #include "apps/view/ui_painter.h"
 #include "apps/view/widgets.h"
 #include "engine/core/error.h"
 #include "engine/description/scene_description.h"
+#include "engine/image/decode_png.h"
 #include "engine/volume/procedural.h"
 #include "engine/volume/scan_file.h"
 
@@ -60,6 +63,14 @@ std::string shortened(const std::string& text, float width) {
   const auto isWithinCharacter = [&] { return (static_cast<unsigned char>(text[length]) & 0xc0u) == 0x80u; };  // of UTF-8
   while (length > 0 && (isWithinCharacter() || ImGui::CalcTextSize((text.substr(0, length) + "...").c_str()).x > width)) --length;
   return text.substr(0, length) + "...";
+}
+
+/// The image that was stored of an opened file; of a sample that was never opened, the one that is in the program.
+std::optional<Image> thumbnailOf(const std::string& file, const fs::path& stored) {
+  std::error_code unknown;
+  if (!stored.empty() && fs::exists(stored, unknown)) return readPng(stored);
+  const std::span<const unsigned char> sample = sampleImage(proceduralName(file).value_or(""));
+  return sample.empty() ? std::nullopt : std::optional(decodePng(file, sample));
 }
 
 }  // namespace
@@ -213,12 +224,11 @@ void FileDialog::drawList() {
 
 const Texture* FileDialog::thumbnail(const std::string& file) {
   const auto [found, isNew] = thumbnails_.try_emplace(file);
-  const fs::path path = store_.thumbnail(file);
-  std::error_code unknown;
-  if (isNew && !path.empty() && fs::exists(path, unknown)) try {
-      const Image image = readPng(path);
-      found->second = std::make_unique<Texture>(device_, image.size, "thumbnail");
-      found->second->upload(device_, srgbTexels(image, {.background = Background{}}));
+  if (isNew) try {
+      if (const std::optional<Image> image = thumbnailOf(file, store_.thumbnail(file))) {
+        found->second = std::make_unique<Texture>(device_, image->size, "thumbnail");
+        found->second->upload(device_, srgbTexels(*image, {.background = Background{}}));
+      }
     } catch (const Error&) {
       found->second = nullptr;
     }

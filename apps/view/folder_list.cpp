@@ -11,6 +11,7 @@
 
 #include "apps/common/sequence.h"
 #include "apps/view/opened_file.h"
+#include "apps/view/typed_text.h"
 #include "engine/volume/scan_file.h"
 
 namespace freevoxels {
@@ -20,17 +21,6 @@ namespace {
 namespace fs = std::filesystem;
 
 constexpr std::size_t kMaxFiles = 20000;  // that are listed
-
-bool containsIgnoringCase(const std::string& text, const std::string& part) {
-  const auto same = [](char a, char b) {
-    return std::tolower(static_cast<unsigned char>(a)) == std::tolower(static_cast<unsigned char>(b));
-  };
-  return std::ranges::search(text, part, same).begin() != text.end() || part.empty();
-}
-
-bool startsIgnoringCase(const std::string& text, const std::string& part) {
-  return part.size() <= text.size() && containsIgnoringCase(text.substr(0, part.size()), part);
-}
 
 /// How many files of a folder are the slices of volumes, which open by its name: TIFF and DICOM, of which the latter often have no ending.
 std::size_t slicesAmong(const std::vector<fs::path>& files) {

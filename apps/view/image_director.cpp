@@ -57,7 +57,7 @@ ImageDirector::ImageDirector(const Device& device, bool wholeOnly)
       whole_(device, volumes_, Window::wake),
       wholeOnly_(wholeOnly) {}
 
-ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int voxels, double scale) const {
+ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int voxels, double quality) const {
   ImageRequest request{.scene = state.scene,
                        .diagnosis = state.diagnosis,
                        .compared = state.comparedMethod(),
@@ -67,9 +67,9 @@ ImageRequest ImageDirector::request(const ViewState& state, Purpose purpose, int
                        .revision = revision_,
                        .purpose = purpose,
                        .voxelsAlongEdge = voxels,
-                       .scale = scale};
+                       .quality = quality};
   glm::ivec2& size = request.scene.camera.size;
-  size = glm::max(glm::ivec2(glm::round(scale * glm::dvec2(size))), glm::ivec2(1));
+  size = glm::max(glm::ivec2(glm::round(request.scale() * glm::dvec2(size))), glm::ivec2(1));
   return request;
 }
 
@@ -162,7 +162,7 @@ void ImageDirector::askOfChange(const ViewState& state) {
   const AdaptiveResolution& pace = purpose == Purpose::Edit ? editPace_ : movePace_;
   askedVoxels_ = state.camera || moves ? pace.voxelsAlongEdge() : kFirstVoxels;
   RenderThread& thread = askedVoxels_ == kAllVoxels ? whole_ : quick_;
-  thread.ask(request(state, purpose, askedVoxels_, pace.scale()));
+  thread.ask(request(state, purpose, askedVoxels_, pace.quality()));
 }
 
 /// Not two images at once, as they share the processor.

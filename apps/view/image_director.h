@@ -49,7 +49,7 @@ class ImageDirector {
   bool mix(ViewState& state);
   bool wantsLayers(const ViewState& state) const;
   bool keep(ViewState& state, RenderThread& thread, const RenderThread::Result& result, std::exception_ptr& failure);
-  ImageRequest request(const ViewState& state, Purpose purpose, int voxels, double scale) const;
+  ImageRequest request(const ViewState& state, Purpose purpose, int voxels, double quality) const;
 
   const Device& device_;
   VolumeCache volumes_;

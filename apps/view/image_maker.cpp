@@ -55,11 +55,13 @@ int blockEdge(const Volume& volume, int voxelsAlongEdge) {
 VolumeCache::VolumeCache(const SceneDescription& scene, std::shared_ptr<const Volume> volume)
     : maximumVoxels_(volume->voxelCount()), clippedName_(nameOf(scene, true)), clipped_(std::move(volume)) {}
 
-VolumeCache::Read VolumeCache::read(const SceneDescription& scene, std::uint64_t number, bool isFrame) {
+VolumeCache::Read VolumeCache::read(const SceneDescription& scene, std::uint64_t number, bool isFrame, bool clips) {
   const std::lock_guard lock(mutex_);
   const std::string clippedName = nameOf(scene, true);
-  if (clipped_ && clippedName == clippedName_) return {clipped_, whole_};
-  clipped_ = nullptr;  // not both at once
+  if (clips) {
+    if (clipped_ && clippedName == clippedName_) return {clipped_, whole_};
+    clipped_ = nullptr;  // not both at once
+  }
   const std::string name = nameOf(scene, false);
   if (!whole_ || name != name_) {
     whole_ = nullptr;
@@ -72,6 +74,7 @@ VolumeCache::Read VolumeCache::read(const SceneDescription& scene, std::uint64_t
     if (isFrame) keepFrame(name, whole_);
     name_ = name;
   }
+  if (!clips) return {whole_, whole_};
   clipped_ = scene.input.clipBox || scene.input.clipPlane ? std::make_shared<const Volume>(scene.input.clip(*whole_)) : whole_;
   clippedName_ = clippedName;
   return {clipped_, whole_};
@@ -143,17 +146,30 @@ std::shared_ptr<const VolumeSource> ImageMaker::coarse(const Scene& scene, int v
   return coarse_;
 }
 
-/// Sums over the volume, the environment and the histogram are made once for all cameras.
+/// The coarse volume without what is clipped. It is clipped anew for each draft, as the whole one would take longer.
+std::shared_ptr<const VolumeSource> ImageMaker::clippedCoarse(const InputDescription& input) const {
+  InputDescription ofCoarse = input;
+  if (ofCoarse.clipBox) *ofCoarse.clipBox = {ofCoarse.clipBox->first / blockEdge_, ofCoarse.clipBox->last / blockEdge_};
+  return std::make_shared<const VolumeInMemory>(std::make_shared<const Volume>(ofCoarse.clip(*known(coarse_))));
+}
+
+/// Sums over the volume, the environment and the histogram are made once for all cameras and all drafts of clipping.
 Scene ImageMaker::resolve(const ImageRequest& request, std::shared_ptr<const Volume> volume, const FilmView* film) {
-  if (scene_ && request.revision != 0 && request.revision == revision_ && scene_->volume == volume) {
-    scene_->camera = request.scene.cameras(*scene_).front();
+  SceneDescription scene = request.scene;
+  if (request.isFrame && !volume->temperature && !volume->classification) scene.emission = {.emission = false};
+  SceneDescription resolved = scene;
+  resolved.camera = {};
+  resolved.output = {};
+  resolved.input.clipBox.reset();
+  resolved.input.clipPlane.reset();
+  if (scene_ && !film && scene_->volume == volume && resolvedOf_ == resolved) {
+    scene_->camera = scene.cameras(*scene_).front();
     return *scene_;
   }
   scene_.reset();
-  SceneDescription scene = request.scene;
-  if (request.isFrame && !volume->temperature && !volume->classification) scene.emission = {.emission = false};
   scene_ = film ? scene.resolveLike(film->scene, std::move(volume)) : scene.resolve(std::move(volume));
-  revision_ = request.revision;
+  resolvedOf_.reset();
+  if (!film) resolvedOf_ = std::move(resolved);
   return *scene_;
 }
 
@@ -191,7 +207,8 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   if (progress) progress(before == input_ ? "preparing" : "reading " + input_, 0.0);
   const std::shared_ptr<const FilmView> film = request.film.empty() ? nullptr : volumes_.viewOf(request.scene, request.film);
   if (!request.film.empty() && !film) fail(ErrorKind::Input, "no frame of the sequence holds anything to draw");
-  VolumeCache::Read read = volumes_.read(request.scene, request.number, request.isFrame);
+  const bool clipsCoarse = request.voxelsAlongEdge != kAllVoxels && request.scene.input.isClipped();
+  VolumeCache::Read read = volumes_.read(request.scene, request.number, request.isFrame, !clipsCoarse);
   DrawnImage drawn{.request = request,
                    .scene = resolve(request, std::move(read.volume), film.get()),
                    .film = film,
@@ -199,7 +216,8 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
                    .device = device_.description()};
   if (drawn.scene.volume->madeOf == MadeOf::Channels) drawn.channels = request.scene.shownChannels();
   const auto start = std::chrono::steady_clock::now();
-  const std::shared_ptr<const VolumeSource> source = coarse(drawn.scene, request.voxelsAlongEdge);
+  std::shared_ptr<const VolumeSource> source = coarse(drawn.scene, request.voxelsAlongEdge);
+  if (clipsCoarse) source = clippedCoarse(request.scene.input);
   if (!kept_.isFor(source, request.scene, drawn.scene)) diagnoser_.reset();
   Renderer& renderer = kept_.get(source, request.scene, drawn.scene, progress);
 
@@ -207,11 +225,11 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   settings.lighting = drawn.scene.lighting;
   settings.holdout = holdoutOf(request);
   if (request.purpose != Purpose::Whole && settings.gathers()) {  // a draft
-    settings.gather().mostSamplesAcrossPixel = 1.0;
-    settings.gather().sampleTolerance = 0.25f;  // four times that of a whole image: more pixels show more than exact rays
-    settings.lod *= float(request.scale);
+    settings.quality = request.quality / request.scale();
+    settings.lod *= float(request.scale());  // blocks as in the whole image, so that none are made for a draft alone
     settings.allowsOldLight = request.purpose == Purpose::Move || request.purpose == Purpose::Classify;
-    if (request.purpose == Purpose::Edit || request.purpose == Purpose::Refine) settings.scatteringCoarseness = 1;
+    if (request.purpose == Purpose::Edit) settings.scatteringCoarseness = 2;
+    if (request.purpose == Purpose::Refine) settings.scatteringCoarseness = 1;
   }
   if (request.layers) {
     if (auto layers = ColorLayers::make(renderer, device_, request.scene, drawn.scene, settings, *request.layers, progress))

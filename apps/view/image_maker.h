@@ -28,12 +28,12 @@ class VolumeCache {
 
   /// The volume that the options name, read and clipped unless it is the last one; whoever comes meanwhile waits for it. A frame of a
   /// sequence may lack grids, and is a voxel without data if it holds nothing. `number` is that of the request (ImageRequest), by which it
-  /// is given up: ErrorKind::Input.
+  /// is given up: ErrorKind::Input. Without `clips` Read::volume is the whole one.
   struct Read {
     std::shared_ptr<const Volume> volume;
     std::shared_ptr<const Volume> whole;  ///< before it was clipped; null where it was not read here
   };
-  Read read(const SceneDescription& scene, std::uint64_t number, bool isFrame = false);
+  Read read(const SceneDescription& scene, std::uint64_t number, bool isFrame = false, bool clips = true);
   /// Gives up what is being read, and what is to be read, for requests up to this number.
   void giveUp(std::uint64_t number) { mayBeRead_ = number + 1; }
   /// The fraction of the file that has been read; nothing while none is.
@@ -71,22 +71,24 @@ struct ImageRequest {
   /// The files of the sequence, if what the scene leaves open is to be chosen for all of them: for the first image.
   std::vector<std::string> film;
   std::uint64_t number = 0;               ///< larger than that of all earlier requests
-  /// The same for requests that differ in camera and size alone, so that the rest of the scene is not resolved again; 0 if that is
-  /// not known.
-  std::uint64_t revision = 0;
+  std::uint64_t revision = 0;             ///< the same for requests that differ in camera and size alone
   Purpose purpose = Purpose::Whole;
   /// Largest number of voxels along the volume's longest edge. Of larger volumes, means of blocks are drawn.
   int voxelsAlongEdge = kAllVoxels;
   /// If given, not an image is wanted but its layers.
   std::optional<Colors> layers = {};
-  /// Edges of the image over those of the whole image. Blocks of the octree are drawn as in that, so that none are made for a quick image
-  /// alone.
-  double scale = 1.0;
+  /// FrameSettings::quality of an image of as many pixels as the whole one. Below kSmallerBelow the image itself is smaller, as it costs
+  /// time to interpolate pixels that nobody can tell apart.
+  double quality = 1.0;
+
+  static constexpr double kSmallerBelow = 0.5;
+  /// Edges of the image over those of the whole image.
+  double scale() const { return std::min(quality / kSmallerBelow, 1.0); }
 };
 
 struct DrawnImage {
   ImageRequest request;    ///< the request that it answers
-  Scene scene;               ///< the resolved scene, with all voxels of the volume
+  Scene scene;  ///< the resolved scene, with all voxels of the volume; in drafts of fewer voxels also with those that are clipped
   std::shared_ptr<const FilmView> film;  ///< of which that scene was chosen; null if it was for the volume alone
   std::shared_ptr<const Volume> whole;   ///< the scene's volume before it was clipped; null where it was not read with its clipping
   DeviceDescription device;  ///< device that made it
@@ -117,6 +119,7 @@ class ImageMaker {
  private:
   Scene resolve(const ImageRequest& request, std::shared_ptr<const Volume> volume, const FilmView* film);
   std::shared_ptr<const VolumeSource> coarse(const Scene& scene, int voxelsAlongEdge);
+  std::shared_ptr<const VolumeSource> clippedCoarse(const InputDescription& input) const;
   std::shared_ptr<const Holdout> holdoutOf(const ImageRequest& request);
 
   const Device& device_;
@@ -127,7 +130,8 @@ class ImageMaker {
   bool coarseIsOfDensities_ = false;
   std::string input_;           ///< of the last request
   std::optional<Scene> scene_;  ///< of the last request
-  std::uint64_t revision_ = 0;
+  /// Of what scene_ was resolved, without camera and clipping; nothing where it was resolved for a film.
+  std::optional<SceneDescription> resolvedOf_;
   std::optional<std::string> heldOutBy_;  ///< CameraDescription::holdout of the last request
   std::shared_ptr<const Holdout> holdout_;
   bool isHoldoutMentioned_ = false;  ///< whether a message says that it is not shown

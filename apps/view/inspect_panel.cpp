@@ -1,9 +1,8 @@
 #include "apps/view/inspect_panel.h"
 
-#include <algorithm>
-#include <array>
 #include <fmt/format.h>
 #include <imgui.h>
+#include <algorithm>
 #include <optional>
 #include <vector>
 
@@ -198,15 +197,8 @@ void drawBlockControls(ViewState& state) {
 }
 
 void drawComparison(ViewState& state) {
-  static constexpr std::array kNames{"nothing", "sorted splats", "the paper's method", "splats", "every voxel, no culling"};
-  int chosen = state.comparison;
-  if (!ImGui::BeginCombo(beginRow("Compare with"), kNames[std::size_t(chosen)])) return;
-  for (int i = 0; i < int(kNames.size()); ++i)
-    if (ImGui::Selectable(kNames[std::size_t(i)], i == chosen)) {
-      state.comparison = i;
-      state.changed = true;
-    }
-  ImGui::EndCombo();
+  state.changed |=
+      choose("Compare with", {"nothing", "sorted splats", "the paper's method", "splats", "every voxel, no culling"}, state.comparison);
 }
 
 std::string megabytes(std::uint64_t bytes) {

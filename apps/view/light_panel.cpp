@@ -116,11 +116,17 @@ bool editRadiance(glm::dvec3& radiance) {
   return changed;
 }
 
-/// `hasSurfaces`: whether the image has some.
-bool drawScattering(LightingDescription& options, bool hasSurfaces) {
+/// Whether lights see surfaces in the volume, were their share not 0.
+bool hasSurfaces(LightingDescription options, const Scene& scene) {
+  options.surface.reset();
+  return options.surfaceOf(*scene.volume, scene.classification) > 0.0;
+}
+
+/// `scene` is that of the image.
+bool drawScattering(LightingDescription& options, const Scene& scene) {
   bool changed = choose("Shading", kShadingWords, options.shading, Shading::Auto);
   hint("As fog, or as surfaces across the gradient; auto: surfaces with a transfer function", "--shading");
-  if (hasSurfaces || options.shading == Shading::Gradient) {
+  if (hasSurfaces(options, scene)) {
     changed |= slideOptional("Surface share", options.surface, 1.0, 0.0, 1.0);
     hint("Share of the light that surfaces reflect; the rest is scattered as in fog", "--surface-share");
   }
@@ -207,9 +213,7 @@ void LightPanel::draw(ViewState& state) {
   changed |= drawAround(options);
   if (lit) {
     ImGui::Separator();
-    const std::optional<Lighting>& drawn = state.latest->scene.lighting;
-    const bool hasSurfaces = drawn && (drawn->surface > 0.0 || options.surface) && options.shading != Shading::Scatter;
-    if (!options.lights.empty()) changed |= drawScattering(options, hasSurfaces);
+    if (!options.lights.empty()) changed |= drawScattering(options, state.latest->scene);
     changed |= drawTint(options);
   }
   ImGui::PopID();

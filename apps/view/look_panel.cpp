@@ -104,6 +104,7 @@ void ClassificationPanel::follow(ViewState& state) {
     density_ = {};
     model_.range.reset();
     model_.unitDistance.reset();
+    ownUnit_.reset();
     if (text) modelText_.clear();  // which may have both
   }
   if (!text || *text == modelText_) return;
@@ -113,7 +114,12 @@ void ClassificationPanel::follow(ViewState& state) {
     preset_ = preset->name;
   else if (!isInlineJson(*text))
     file_ = *text;
-  attempt(state, [&] { model_ = TransferModel::read(*text, volume); });
+  attempt(state, [&] { read(*text, volume); });
+}
+
+void ClassificationPanel::read(const std::string& text, const Volume& volume) {
+  model_ = TransferModel::read(text, volume);
+  ownUnit_ = model_.unitDistance;
 }
 
 void ClassificationPanel::deselect() {
@@ -133,7 +139,7 @@ void ClassificationPanel::drawKind(ViewState& state) {
   } else {
     density_ = options;
     if (modelText_.empty()) {
-      model_ = TransferModel::read(kFirstPreset, *state.latest->scene.volume);
+      read(kFirstPreset, *state.latest->scene.volume);
       modelText_ = preset_ = kFirstPreset;
     }
     options = {.transferFunction = modelText_};
@@ -166,9 +172,12 @@ void ClassificationPanel::drawTransferFunction(ViewState& state) {
   changed |= strip_.draw(model_);
   drawWindow(state);
   drawChanges(state);
-  changed |= unitDistance_.draw("Unit distance", "World length that the opacities are of", "unit_distance of --transfer-function",
-                                model_.unitDistance,
-                                volume.voxelSize());
+  std::optional<double> unit = model_.unitDistance == ownUnit_ ? std::nullopt : model_.unitDistance;
+  if (unitDistance_.draw("Unit distance", "World length that the opacities are of", "unit_distance of --transfer-function", unit,
+                         ownUnit_.value_or(volume.voxelSize()))) {
+    model_.unitDistance = unit ? unit : ownUnit_;
+    changed = true;
+  }
   changed |= drawFile(state);
   if (!changed) return;
   preset_.clear();
@@ -177,17 +186,19 @@ void ClassificationPanel::drawTransferFunction(ViewState& state) {
 }
 
 bool ClassificationPanel::drawPresets(ViewState& state) {
-  bool changed = false;
   if (!ImGui::BeginCombo(beginRow("Preset"), preset_.empty() ? "own" : preset_.c_str(), ImGuiComboFlags_HeightLargest)) return false;
   const float scale = ImGui::GetFontSize() / kFontPixels;
   const ImVec2 tile(scale * float(PresetImages::kSize.x), scale * float(PresetImages::kSize.y));
-  for (std::size_t i = 0; i < transferPresets().size(); ++i) {
-    const std::string name(transferPresets()[i].name);
+  std::vector<std::string> names;
+  for (const TransferPreset& preset : transferPresets()) names.emplace_back(preset.name);
+  bool changed = false;
+  drawEntries(names, std::size_t(std::ranges::find(names, preset_) - names.begin()), [&](std::size_t i) {
+    const std::string& name = names[i];
     ImGui::PushID(int(i));
     const ImVec2 low = ImGui::GetCursorScreenPos();
     if (ImGui::Selectable("##preset", preset_ == name, 0, {0.0f, tile.y})) {
       deselect();
-      model_ = TransferModel::read(name, *state.latest->scene.volume);
+      read(name, *state.latest->scene.volume);
       state.scene.classification.transferFunction = modelText_ = preset_ = name;
       state.scene.classification.window.reset();
       changed = true;
@@ -198,7 +209,7 @@ bool ClassificationPanel::drawPresets(ViewState& state) {
     if (const Texture* const image = presets_.of(i, state.latest)) list.AddImage(textureId(*image), low, high);
     list.AddText({high.x + 8.0f, low.y + 0.5f * (tile.y - ImGui::GetFontSize())}, ImGui::GetColorU32(ImGuiCol_Text), name.c_str());
     ImGui::PopID();
-  }
+  });
   ImGui::EndCombo();
   return changed;
 }
@@ -247,7 +258,7 @@ bool ClassificationPanel::drawFile(ViewState& state) {
   bool loaded = false;
   if (ImGui::Button("Load") && !file_.empty())
     attempt(state, [&] {
-      model_ = TransferModel::read(file_, *state.latest->scene.volume);
+      read(file_, *state.latest->scene.volume);
       deselect();
       loaded = true;
     });
@@ -271,6 +282,11 @@ bool ClassificationPanel::drawFile(ViewState& state) {
 }
 
 void LookPanel::draw(ViewState& state, GridList& grids) {
+  if (opened_ != openedName(state)) {
+    opened_ = openedName(state);
+    classification_.forgetScales();
+    emission_ = {};
+  }
   if (state.latest) classification_.follow(state);
   if (!panelHeader("Look", state.latest != nullptr, true)) return;
   const bool isFixed = state.latest->scene.volume->classificationIsFixed;

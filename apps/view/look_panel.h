@@ -51,12 +51,16 @@ class ClassificationPanel {
   void draw(ViewState& state);
   /// Takes over what was changed elsewhere. Called in every frame, whether or not the panel is open.
   void follow(ViewState& state);
+  /// Another file was opened, for which other values suit.
+  void forgetScales() { scale_ = unitDistance_ = AutomaticSlider(); }
   /// For the histogram.
   bool waits() const { return histogram_.isMaking(); }
 
  private:
   /// Forgets the selected points and the preset of curves that no longer exist.
   void deselect();
+  /// Takes the function of an option's text for model_.
+  void read(const std::string& text, const Volume& volume);
   void drawKind(ViewState& state);
   void drawDensity(ViewState& state);
   void drawTransferFunction(ViewState& state);
@@ -75,6 +79,7 @@ class ClassificationPanel {
   std::string volume_;             ///< source of the volume that the other members belong to
   ClassificationDescription density_;  ///< options before there was a transfer function
   TransferModel model_;
+  std::optional<double> ownUnit_;  ///< TransferModel::unitDistance as the function has it for this volume, before the user changes it
   std::string modelText_;  ///< text of the option that model_ was read from, or written to
   std::string file_, preset_;
   std::string overwritten_;  ///< the file of that name that Save may replace: written by it, or asked for twice
@@ -99,6 +104,7 @@ class LookPanel {
   bool waits() const { return classification_.waits(); }
 
  private:
+  std::string opened_;  ///< openedName() of what the panels were last drawn for
   ClassificationPanel classification_;
   EmissionPanel emission_;
 };

@@ -25,6 +25,11 @@ constexpr Ink kDarkInk{IM_COL32(24, 24, 28, 255), IM_COL32(255, 255, 255, 150), 
 constexpr ImU32 kPlaneColor = IM_COL32(240, 200, 80, 255);
 constexpr float kHandle = 9.0f;     // reach of the mouse, in units
 constexpr float kMinSlope = 0.15f;  // sine of the angle between a plane's normal and the view from which its handle follows the normal
+constexpr float kGap = 0.5f;        // least distance between overlays, in units of the font's size
+// In units: the middle of the axes from the image's corner, how far they reach from there, and the distance of the bars from its borders.
+constexpr float kAxesMiddle = 52.0f, kAxesReach = 44.0f, kBarMargin = 18.0f;
+constexpr float kLongestScaleBar = 140.0f, kScaleBarShare = 0.35f;  // in units, and of the image's width
+constexpr float kHighestColorBar = 220.0f, kColorBarShare = 0.4f;   // in units, and of the image's height
 
 float unit() {
   return ImGui::GetFontSize() / 15.0f;
@@ -51,7 +56,7 @@ struct AxisEnd {
 
 std::array<AxisEnd, 6> axisEnds(const Camera& camera, const ImageFrame& frame, ImVec2& centre) {
   const float length = 34.0f * unit();
-  centre = {frame.low.x + 52.0f * unit(), frame.high.y - 52.0f * unit()};
+  centre = {frame.low.x + kAxesMiddle * unit(), frame.high.y - kAxesMiddle * unit()};
   const glm::dmat3 toCamera(worldToCamera(camera));
   std::array<AxisEnd, 6> ends;
   for (int i = 0; i < 6; ++i) {
@@ -62,7 +67,18 @@ std::array<AxisEnd, 6> axisEnds(const Camera& camera, const ImageFrame& frame, I
   return ends;
 }
 
-void drawAxes(const Camera& camera, const ImageFrame& frame, const Ink& ink) {
+OverlayRoom roomOf(const ImageFrame& frame) {
+  return OverlayRoom(frame, kGap * ImGui::GetFontSize());
+}
+
+bool takeAxes(OverlayRoom& room, const ImageFrame& frame) {
+  const float near = (kAxesMiddle - kAxesReach) * unit(), far = (kAxesMiddle + kAxesReach) * unit();
+  return room.take({frame.low.x + near, frame.high.y - far}, {frame.low.x + far, frame.high.y - near});
+}
+
+/// False where there is no room for them.
+bool drawAxes(const Camera& camera, const ImageFrame& frame, const Ink& ink, OverlayRoom& room) {
+  if (!takeAxes(room, frame)) return false;
   constexpr std::array kNames{"x", "y", "z"};
   ImVec2 centre;
   const auto ends = axisEnds(camera, frame, centre);
@@ -81,6 +97,7 @@ void drawAxes(const Camera& camera, const ImageFrame& frame, const Ink& ink) {
     const ImVec2 text = ImGui::CalcTextSize(name);
     list.AddText({end.place.x - 0.5f * text.x, end.place.y - 0.55f * text.y}, IM_COL32(20, 20, 24, 255), name);
   }
+  return true;
 }
 
 /// A corner of the volume's box in the world; bits 0 to 2 of `i` say whether it is the last one along x, y and z.
@@ -96,7 +113,6 @@ void drawPlane(const Volume& volume, const ClipPlane& plane, const Camera& camer
   ImGui::GetWindowDrawList()->AddPolyline(places.data(), int(places.size()), kPlaneColor, ImDrawFlags_Closed, 1.5f * unit());
 }
 
-/// The volume's box with the world coordinates of two opposite corners.
 void drawBox(const Volume& volume, const Camera& camera, const ImageFrame& frame, const Ink& ink) {
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const auto corner = [&](int i) { return boxCorner(volume, i); };
@@ -106,39 +122,59 @@ void drawBox(const Volume& volume, const Camera& camera, const ImageFrame& frame
       const auto from = frame.place(camera, corner(i)), to = frame.place(camera, corner(i | 1 << axis));
       if (from && to) list.AddLine(*from, *to, i == 0 ? kAxisColors[std::size_t(axis)] : ink.box, i == 0 ? 2.0f : 1.0f);
     }
-  for (const int i : {0, 7})
-    if (const auto place = frame.place(camera, corner(i))) {
-      const glm::dvec3 world = corner(i);
-      drawText(list, {place->x + 5.0f, place->y + 2.0f}, ink, fmt::format("{:.3g}, {:.3g}, {:.3g}", world.x, world.y, world.z));
-    }
 }
 
-void drawScaleBar(const Camera& camera, const ImageFrame& frame, const std::string& lengthUnit, const Ink& ink) {
+/// The world coordinates of two opposite corners of the volume's box, where there is room for them.
+void drawCorners(const Volume& volume, const Camera& camera, const ImageFrame& frame, const Ink& ink, OverlayRoom& room) {
+  for (const int i : {0, 7}) {
+    const glm::dvec3 world = boxCorner(volume, i);
+    const auto corner = frame.place(camera, world);
+    if (!corner) continue;
+    const std::string text = fmt::format("{:.3g}, {:.3g}, {:.3g}", world.x, world.y, world.z);
+    const ImVec2 low(corner->x + 5.0f, corner->y + 2.0f), size = ImGui::CalcTextSize(text.c_str());
+    if (room.take(low, {low.x + size.x, low.y + size.y})) drawText(*ImGui::GetWindowDrawList(), low, ink, text);
+  }
+}
+
+/// False where there is no room for it.
+bool drawScaleBar(const Camera& camera, const ImageFrame& frame, const std::string& lengthUnit, const Ink& ink, OverlayRoom& room) {
   const double pixel = pixelLength(camera, double(frame.size().y));
-  const double length = roundLength(140.0 * double(unit()) * pixel);
+  const double length = roundLength(double(std::min(kLongestScaleBar * unit(), kScaleBarShare * frame.size().x)) * pixel);
   const auto width = float(length / pixel);
-  const ImVec2 end(frame.high.x - 18.0f * unit(), frame.high.y - 18.0f * unit());
+  const std::string text =
+      !lengthUnit.empty() ? lengthText(length, lengthUnit) : fmt::format("{:g} {}", length, length == 1.0 ? "unit" : "units");
+  const float textWidth = ImGui::CalcTextSize(text.c_str()).x;
+  // Of a text that is longer than the bar, the right end is at the margin.
+  const ImVec2 end(frame.high.x - kBarMargin * unit() - 0.5f * std::max(textWidth - width, 0.0f), frame.high.y - kBarMargin * unit());
+  const ImVec2 textLow(end.x - 0.5f * (width + textWidth), end.y - 1.5f * ImGui::GetFontSize());
+  if (!room.take({std::min(textLow.x, end.x - width), textLow.y}, {std::max(textLow.x + textWidth, end.x), end.y})) return false;
   ImDrawList& list = *ImGui::GetWindowDrawList();
   for (const auto& [shift, color] : {std::pair(1.0f, ink.shade), std::pair(0.0f, ink.line)}) {
     const ImVec2 right(end.x + shift, end.y + shift), left(right.x - width, right.y);
     list.AddLine(left, right, color, 2.0f);
     for (const ImVec2 at : {left, right}) list.AddLine({at.x, at.y - 5.0f}, {at.x, at.y + 1.0f}, color, 2.0f);
   }
-  const std::string text =
-      !lengthUnit.empty() ? lengthText(length, lengthUnit) : fmt::format("{:g} {}", length, length == 1.0 ? "unit" : "units");
-  const float textWidth = ImGui::CalcTextSize(text.c_str()).x;
-  drawText(list, {end.x - 0.5f * (width + textWidth), end.y - 1.5f * ImGui::GetFontSize()}, ink, text);
+  drawText(list, textLow, ink, text);
+  return true;
 }
 
-/// The colours of the transfer function with the values of its ends and middle.
-void drawColorBar(const ViewState& state, const ImageFrame& frame, const Ink& ink) {
+/// The colours of the transfer function with the values of its ends and middle. False where there is no room for them.
+bool drawColorBar(const ViewState& state, const ImageFrame& frame, const Ink& ink, OverlayRoom& room) {
   const auto& function = state.latest->scene.classification.transferFunction;
-  if (!function) return;
-  const float height = std::min(220.0f * unit(), 0.4f * frame.size().y), width = 12.0f * unit();
-  const ImVec2 low(frame.high.x - 18.0f * unit() - width, frame.low.y + 18.0f * unit());
-  ImDrawList& list = *ImGui::GetWindowDrawList();
+  if (!function) return true;
+  const float height = std::min(kHighestColorBar * unit(), kColorBarShare * frame.size().y), width = 12.0f * unit();
+  const float toText = 6.0f * unit(), text = ImGui::GetFontSize();
+  const ImVec2 low(frame.high.x - kBarMargin * unit() - width, frame.low.y + kBarMargin * unit());
   const double least = std::min(function->opacity.front().scalar, function->color.front().scalar);
   const double span = double(std::max(function->opacity.back().scalar, function->color.back().scalar)) - least;
+  std::array<std::string, 3> values;
+  float widest = 0.0f;
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    values[i] = fmt::format("{:.4g}", least + 0.5 * double(i) * span);
+    widest = std::max(widest, ImGui::CalcTextSize(values[i].c_str()).x);
+  }
+  if (!room.take({low.x - toText - widest, low.y - 0.5f * text}, {low.x + width, low.y + height + 0.5f * text})) return false;
+  ImDrawList& list = *ImGui::GetWindowDrawList();
   TransferModel model;
   for (const auto& [scalar, color] : function->color)
     model.color.push_back({span > 0.0 ? (double(scalar) - least) / span : 0.0, glm::dvec3(color)});
@@ -146,11 +182,11 @@ void drawColorBar(const ViewState& state, const ImageFrame& frame, const Ink& in
     list.AddRectFilled({low.x, low.y + y}, {low.x + width, low.y + y + 1.0f},
                        shownColor(model.colorAt(1.0 - double(y / height)), 1.0f));
   list.AddRect({low.x - 1.0f, low.y - 1.0f}, {low.x + width + 1.0f, low.y + height + 1.0f}, ink.shade);
-  for (const double x : {0.0, 0.5, 1.0}) {
-    const std::string text = fmt::format("{:.4g}", least + x * span);
-    const float y = low.y + float(1.0 - x) * height;
-    drawText(list, {low.x - 6.0f - ImGui::CalcTextSize(text.c_str()).x, y - 0.5f * ImGui::GetFontSize()}, ink, text);
+  for (std::size_t i = 0; i < values.size(); ++i) {
+    const float y = low.y + (1.0f - 0.5f * float(i)) * height;
+    drawText(list, {low.x - toText - ImGui::CalcTextSize(values[i].c_str()).x, y - 0.5f * text}, ink, values[i]);
   }
+  return true;
 }
 
 }  // namespace
@@ -190,7 +226,23 @@ std::optional<std::size_t> lightUnderMouse(const ViewState& state, const ImageFr
   return {};
 }
 
+bool OverlayRoom::take(ImVec2 low, ImVec2 high) {
+  const bool isWithin = low.x >= frame_.low.x && low.y >= frame_.low.y && high.x <= frame_.high.x && high.y <= frame_.high.y;
+  if (!isWithin || 2.0f * (high.x - low.x) > frame_.size().x || 2.0f * (high.y - low.y) > frame_.size().y) return false;
+  for (const auto& [otherLow, otherHigh] : taken_)
+    if (low.x < otherHigh.x + gap_ && otherLow.x < high.x + gap_ && low.y < otherHigh.y + gap_ && otherLow.y < high.y + gap_) return false;
+  taken_.emplace_back(low, high);
+  return true;
+}
+
+ImageFrame betweenAxesAndScaleBar(const ImageFrame& frame) {
+  const float gap = kGap * ImGui::GetFontSize();
+  return {{frame.low.x + (kAxesMiddle + kAxesReach) * unit() + gap, frame.low.y},
+          {frame.high.x - (kBarMargin + kLongestScaleBar) * unit() - gap, frame.high.y}};
+}
+
 std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame) {
+  if (OverlayRoom room = roomOf(frame); !takeAxes(room, frame)) return {};
   const ImVec2 mouse = ImGui::GetIO().MousePos;
   ImVec2 centre;
   const auto ends = axisEnds(camera, frame, centre);
@@ -235,11 +287,8 @@ void ClipHandles::addBox(const ViewState& state, const ImageFrame& frame) {
   if (!state.scene.input.clipBox || !state.latest->request.scene.input.clipBox || !state.latest->whole) return;
   const VoxelBox& box = *state.scene.input.clipBox;
   const glm::dvec3 first(box.first), last(glm::min(box.last, state.latest->whole->dimensions - 1));
-  // The drawn volume begins at the first voxel of the box that it was drawn with.
-  const glm::dvec3 drawnFirst(state.latest->request.scene.input.clipBox->first);
   const auto place = [&](glm::dvec3 voxel) {
-    return frame.place(state.latest->scene.camera,
-                       glm::dvec3(state.latest->scene.volume->indexToWorld * glm::dvec4(voxel - drawnFirst, 1.0)));
+    return frame.place(state.latest->scene.camera, glm::dvec3(state.latest->whole->indexToWorld * glm::dvec4(voxel, 1.0)));
   };
   for (int side = 0; side < 6; ++side) {
     const int axis = side / 2;
@@ -318,11 +367,16 @@ void drawOverlays(const ViewState& state, const ImageFrame& frame) {
   list.PushClipRect(frame.low, frame.high, true);
   const bool isVolume = state.latest && state.diagnosis.shown == Shown::Image;
   const ClipHandles clip(state, frame);
-  if (state.latest && (state.overlays.box || state.scene.input.clipBox)) drawBox(*state.latest->scene.volume, camera, frame, ink);
+  const bool showsBox = state.latest && (state.overlays.box || state.scene.input.clipBox);
+  if (showsBox) drawBox(*state.latest->scene.volume, camera, frame, ink);
   if (state.latest && state.scene.input.clipPlane) drawPlane(*state.latest->scene.volume, *state.scene.input.clipPlane, camera, frame);
-  if (state.overlays.colorBar && isVolume) drawColorBar(state, frame, ink);
-  if (state.overlays.scaleBar) drawScaleBar(camera, frame, state.latest ? state.latest->scene.volume->lengthUnit : "", ink);
-  if (state.overlays.axes) drawAxes(camera, frame, ink);
+  // In the order of their importance: what has no room in a small image is left out, and so is what is less important.
+  OverlayRoom room = roomOf(frame);
+  bool hasRoom = !state.overlays.axes || drawAxes(camera, frame, ink, room);
+  if (hasRoom && state.overlays.scaleBar)
+    hasRoom = drawScaleBar(camera, frame, state.latest ? state.latest->scene.volume->lengthUnit : "", ink, room);
+  if (hasRoom && state.overlays.colorBar && isVolume) hasRoom = drawColorBar(state, frame, ink, room);
+  if (hasRoom && showsBox) drawCorners(*state.latest->scene.volume, camera, frame, ink, room);
   if (isVolume && !state.scene.lighting.unlit) drawLights(state, frame);
   const ClipHandles::Handle* const hovered = clip.hovered();
   for (const ClipHandles::Handle& handle : clip.handles) {

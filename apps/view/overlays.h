@@ -6,6 +6,7 @@
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "apps/view/view_state.h"
@@ -22,13 +23,32 @@ struct ImageFrame {
   std::optional<ImVec2> place(const Camera& camera, glm::dvec3 world) const;
 };
 
+/// Room for what is drawn over an image.
+class OverlayRoom {
+ public:
+  /// `gap` is the least distance between two rectangles.
+  OverlayRoom(const ImageFrame& frame, float gap) : frame_(frame), gap_(gap) {}
+  /// Takes a rectangle. Returns false, and takes nothing, where it is not within the image, where it is wider or higher than half of it,
+  /// and where it is too near to one that was taken before.
+  bool take(ImVec2 low, ImVec2 high);
+
+ private:
+  const ImageFrame frame_;
+  const float gap_;
+  std::vector<std::pair<ImVec2, ImVec2>> taken_;
+};
+
+/// The part of the image between the axes at its lower left and the longest scale bar at its lower right; `high.x` is less than `low.x`
+/// where there is nothing between them.
+ImageFrame betweenAxesAndScaleBar(const ImageFrame& frame);
+
 /// World length of a pixel at the look-at point, of an image `height` pixels high.
 double pixelLength(const Camera& camera, double height);
 /// The way in the plane that is parallel to the image and goes through a position before the eye, for a way on an image `height` pixels
 /// high, in pixels to the right and upwards.
 glm::dvec3 wayBeside(const Camera& camera, glm::dvec3 position, glm::dvec2 pixels, double height);
 
-/// The axis in the corner whose end is under the mouse: 0 to 5 for +x, -x, +y, -y, +z, -z.
+/// The axis in the corner whose end is under the mouse: 0 to 5 for +x, -x, +y, -y, +z, -z. None where there is no room for the axes.
 std::optional<int> axisUnderMouse(const Camera& camera, const ImageFrame& frame);
 
 /// The box that clips the volume, with a handle in the middle of each side; and the plane, with one in its middle.
@@ -60,7 +80,7 @@ std::vector<glm::dvec3> planeInBox(const Volume& volume, const ClipPlane& plane)
 /// The box with one side moved by a number of voxels, at least one voxel thick and inside of a volume of `dimensions`.
 VoxelBox withSideMoved(const VoxelBox& box, int side, int voxels, glm::ivec3 dimensions);
 
-/// Draws what ViewState::overlays has, into the current Dear ImGui window. `state` has a camera.
+/// Draws what ViewState::overlays has, as far as there is room for it, into the current Dear ImGui window. `state` has a camera.
 void drawOverlays(const ViewState& state, const ImageFrame& frame);
 
 }  // namespace freevoxels

@@ -48,12 +48,24 @@ void ViewState::begin(const Scene& first) {
     scene.emission.take(*first.classification.emission);  // which would follow the channels' colours
   LightingDescription& lighting = scene.lighting;
   if (lighting.hasLight() || !first.lighting) return;
-  for (const Light& light : first.lighting->lights) lighting.lights.push_back({.light = light, .hasIntensity = true});
+  lighting.take(first.lighting->lights);
   lighting.ambient = first.lighting->ambient;
+}
+
+void Edits::takeFlight() {
+  CameraDescription& first = scene.camera;
+  if (!first.flight) return;
+  flight = readFlight(*first.flight);
+  const CameraDescription given = std::exchange(first, flight.keys.front().camera);
+  first.size = given.size;
+  first.frames = given.frames;
+  first.holdout = given.holdout;
 }
 
 void ViewState::show(const SceneDescription& other, const std::optional<Sequence>& frames) {
   scene = other;
+  flight = {};
+  takeFlight();
   sequence = frames;
   camera.reset();
   problem.clear();
@@ -80,7 +92,8 @@ void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<Cli
   if (!latest) return;
   const Classification& now = latest->scene.classification;
   ClassificationDescription& options = scene.classification;
-  if (!now.transferFunction && !options.transferFunction && !options.densityScale && !latest->scene.volume->classificationIsFixed)
+  // A baked volume has the scale of its file, clipped or not.
+  if (!now.transferFunction && !options.transferFunction && !options.densityScale && !latest->scene.volume->classification)
     options.takeDensityScale(now.densityScale);
   scene.input.clipBox = box;
   scene.input.clipPlane = plane;

@@ -10,6 +10,7 @@
 
 #include "apps/common/sequence.h"
 #include "apps/view/image_maker.h"
+#include "engine/description/flight_description.h"
 #include "engine/description/scene_description.h"
 
 namespace freevoxels {
@@ -21,8 +22,12 @@ struct Edits {
   int comparison = 0;  ///< 0 for none, or the argument of comparedMethod
   /// The sequence of which the volume is a frame.
   std::optional<Sequence> sequence;
+  FlightDescription flight;  ///< the key frames of which the panel "View" makes a flight
   /// The camera of the scene's options. Unknown before the first image, which resolves what is not given.
   std::optional<Camera> camera;
+
+  /// Makes the flight of the scene's options, if they have one, that of the panel, and begins at its first key. Fails as readFlight().
+  void takeFlight();
 };
 
 /// What is drawn over the image.

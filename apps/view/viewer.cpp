@@ -29,7 +29,6 @@ namespace freevoxels {
 
 namespace {
 
-constexpr std::array kDeviceExtensions{VK_KHR_SWAPCHAIN_EXTENSION_NAME};
 constexpr glm::ivec2 kWindowSize{1280, 800};
 constexpr float kPanelWidth = 340.0f, kMinPanelWidth = 240.0f;
 constexpr float kMinSlicesShare = 0.1f, kMaxSlicesShare = 0.8f;  // of the image's width
@@ -54,20 +53,22 @@ void makeTexture(const Device& device, std::unique_ptr<Texture>& texture, glm::i
 Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const ViewOptions& options)
     : options_(options),
       window_(windows, "FreeVoxels", kWindowSize),
-      device_(options.device.open(instance, kDeviceExtensions)),
-      swapchain_(instance, *device_, window_),
-      display_(*device_),
+      devices_(instance, options.device, options.showOn),
+      swapchain_(instance, devices_.showing(), window_),
+      display_(devices_.showing()),
       state_{{.scene = options.scene.description, .sequence = options.sequence}},
       store_(options.screenshot ? std::filesystem::path() : sessionFolder()),
-      dialog_(*device_, store_),
-      look_(*device_),
-      export_(*device_, dialog_, options.scene.description.camera.frames.value_or(kDefaultFrames), Window::wake),
-      slices_(*device_),
-      director_(*device_, options.screenshot.has_value()),
+      dialog_(devices_.showing(), store_),
+      look_(devices_.showing()),
+      flight_(dialog_),
+      export_(devices_.drawing(), dialog_, options.scene.description.camera.frames.value_or(kDefaultFrames), Window::wake),
+      slices_(devices_.showing()),
+      director_(devices_.drawing(), options.screenshot.has_value()),
       panelWidth_(kPanelWidth * window_.contentScale()) {
   ImGui::GetIO().IniFilename = nullptr;
+  state_.takeFlight();
   applyTheme(window_.contentScale());
-  painter_ = std::make_unique<UiPainter>(*device_, swapchain_.format());
+  painter_ = std::make_unique<UiPainter>(devices_.showing(), swapchain_.format());
   opened(openedName(state_));
 }
 
@@ -99,13 +100,17 @@ void Viewer::showLatest() {
   newImage_ = true;
   drawn_ = state_.latest;
   const DrawnImage& drawn = *drawn_;
+  if (!devices_.areOne()) {
+    onShowing_ = devices_.moved(*drawn.shown);
+    if (drawn.compared) comparedOnShowing_ = devices_.moved(*drawn.compared);
+  }
   const bool isWhole = state_.latest == state_.whole;
   before_ = nullptr;
   if (isWhole && texture_ && state_.scene.output.look().background) before_ = std::move(texture_);
   shown_ = Clock::now();
-  makeTexture(*device_, texture_, drawn.shown->size());
+  makeTexture(devices_.showing(), texture_, drawn.shown->size());
   if (drawn.compared)
-    makeTexture(*device_, comparedTexture_, drawn.compared->size());
+    makeTexture(devices_.showing(), comparedTexture_, drawn.compared->size());
   else
     comparedTexture_ = nullptr;
 }
@@ -118,8 +123,8 @@ bool Viewer::fades() const {
 void Viewer::recordImage(Commands& commands) const {
   if (!newImage_) return;
   const DisplayLook look = state_.scene.output.look();
-  display_.record(commands, *drawn_->shown, look, *texture_);
-  if (comparedTexture_) display_.record(commands, *drawn_->compared, look, *comparedTexture_);
+  display_.record(commands, devices_.areOne() ? *drawn_->shown : onShowing_, look, *texture_);
+  if (comparedTexture_) display_.record(commands, devices_.areOne() ? *drawn_->compared : comparedOnShowing_, look, *comparedTexture_);
 }
 
 std::array<ActionState, kActions> Viewer::actionStates() const {
@@ -189,7 +194,7 @@ void Viewer::drawSidePanel(float top, float width, float height) {
   look_.draw(state_, grids_);
   light_.draw(state_);
   ImGui::EndDisabled();
-  drawViewPanel(state_, store_);
+  drawViewPanel(state_, store_, flight_);
   export_.draw(state_);
   drawInspectPanel(state_);
   ImGui::End();
@@ -273,6 +278,8 @@ void Viewer::drawWindow() {
 /// What the user has asked for in this frame.
 void Viewer::act() {
   volume_.frames().follow(state_);
+  if (area_.moves()) flight_.pause();
+  flight_.follow(state_, double(ImGui::GetIO().DeltaTime));
   bool restored = false;
   if (const std::optional<std::string> file = std::exchange(wanted_, std::nullopt)) open(*file);
   const auto pressed = pressedAction(dialog_.isOpen());
@@ -286,8 +293,11 @@ void Viewer::act() {
   if (restored) state_.bookmarks = store_.bookmarks(state_.scene.input.volume);  // maybe another volume
   if (area_.hasTurned()) store_.setKnowsHowToTurn();
   export_.follow(state_);
-  if (export_.waits()) volume_.frames().pause();  // for the whole image of this frame
-  const bool plays = volume_.frames().plays();
+  if (export_.waits()) {  // for the whole image of this frame
+    volume_.frames().pause();
+    flight_.pause();
+  }
+  const bool plays = this->plays();
   const Clock::time_point now = Clock::now();
   edited_ = !plays && !restored && (state_.changed || state_.retoned);
   const bool moved = !plays && !restored && state_.moved && !state_.changed;
@@ -333,7 +343,7 @@ void Viewer::drawFrame() {
   act();
   ImGui::Render();
   // Before the window is painted, so that the next image is drawn meanwhile.
-  director_.ask(state_, area_.pixels(), area_.moves() || volume_.frames().plays());
+  director_.ask(state_, area_.pixels(), area_.moves() || plays());
   if (!paint) return;
   painted_ = Clock::now();
   painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { recordImage(commands); });
@@ -355,7 +365,7 @@ void Viewer::rememberOpened() {
   if (!opened_.empty() && isWorthRemembering(opened_)) store_.remember(opened_);
   opened_.clear();
   if (thumbnailOf_.empty() || fades() || options_.screenshot) return;
-  store_.storeThumbnail(thumbnailOf_, downloadImage(*device_, *state_.whole->image), state_.scene.output.look());
+  store_.storeThumbnail(thumbnailOf_, downloadImage(devices_.drawing(), *state_.whole->image), state_.scene.output.look());
   thumbnailOf_.clear();
 }
 
@@ -372,7 +382,7 @@ void Viewer::storeLastScene() {
 /// Until something is to be done, if nothing happens.
 double Viewer::patience() const {
   if (options_.screenshot || window_.inputWaits() || newImage_) return 0.0;
-  const bool busy = area_.moves() || fades() || !director_.isSettled() || (volume_.frames().plays());
+  const bool busy = area_.moves() || fades() || !director_.isSettled() || plays();
   return busy ? kSoonSeconds : kIdleSeconds;
 }
 

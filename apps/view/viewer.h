@@ -8,6 +8,7 @@
 #include "apps/view/actions.h"
 #include "apps/view/export_panel.h"
 #include "apps/view/file_dialog.h"
+#include "apps/view/flight_panel.h"
 #include "apps/view/image_area.h"
 #include "apps/view/image_director.h"
 #include "apps/view/light_panel.h"
@@ -20,6 +21,7 @@
 #include "apps/view/view_state.h"
 #include "apps/view/volume_panel.h"
 #include "apps/view/window.h"
+#include "apps/view/window_devices.h"
 #include "engine/image/display_pass.h"
 
 namespace freevoxels {
@@ -58,17 +60,19 @@ class Viewer {
   bool isOpening() const;
   void drawOpening();
   void storeLastScene();
+  bool plays() const { return volume_.frames().plays() || flight_.plays(); }
   double patience() const;
   void writeScreenshot() const;
   void end();
 
   const ViewOptions options_;
   Window window_;
-  const std::unique_ptr<Device> device_;  ///< that makes the images and draws the window
+  const WindowDevices devices_;
   Swapchain swapchain_;
   std::unique_ptr<UiPainter> painter_;
   DisplayPass display_;
   std::shared_ptr<const DrawnImage> drawn_;  ///< of the textures
+  RenderTarget onShowing_, comparedOnShowing_;  ///< of drawn_, on the device that draws the window, where that is another one
   std::unique_ptr<Texture> texture_, before_, comparedTexture_;
 
   ViewState state_;
@@ -80,6 +84,7 @@ class Viewer {
   VolumePanel volume_;
   LookPanel look_;
   LightPanel light_;
+  FlightPanel flight_;
   ExportPanel export_;
   ImageArea area_;
   SliceView slices_;

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <cstdlib>
 
+#include "apps/view/typed_text.h"
 #include "engine/image/srgb.h"
 
 namespace freevoxels {
@@ -58,6 +59,24 @@ bool editColorBy(const char* name, glm::dvec3& linear, ImGuiColorEditFlags flags
   if (!ImGui::ColorEdit3(name, &shown.x, flags)) return false;
   for (int c = 0; c < 3; ++c) linear[c] = roundedTo(brightness * double(linearFromSrgb(shown[c])), 1e-4);
   return true;
+}
+
+/// The letters that were typed since the last frame. No blanks, since the space bar chooses the entry that has the focus.
+std::string typedLetters() {
+  const ImGuiIO& io = ImGui::GetIO();
+  std::string letters;
+  if (io.KeyCtrl || io.KeyAlt) return letters;
+  for (const ImWchar letter : io.InputQueueCharacters)
+    if (letter > ' ' && letter < 0x7f) letters += char(letter);
+  return letters;
+}
+
+/// Makes the last item the one that the arrows go on from and that Enter chooses, and shows it as that.
+void focusLastItem() {
+  ImGui::SetKeyboardFocusHere(-1);
+#if IMGUI_VERSION_NUM >= 19140  // older ones show it by themselves
+  ImGui::SetNavCursorVisible(true);
+#endif
 }
 
 }  // namespace
@@ -165,16 +184,31 @@ bool dragVector(const char* label, glm::dvec3& value, double step) {
   return true;
 }
 
+void drawEntries(const std::vector<std::string>& entries, std::size_t chosen, const std::function<void(std::size_t)>& draw) {
+  static TypedText typed;  // of the one combo box that is open
+  static std::size_t current = 0;
+  if (ImGui::IsWindowAppearing()) {
+    typed = {};
+    current = chosen;
+  }
+  const std::optional<std::size_t> found = typed.find(entries, current, typedLetters(), ImGui::GetTime());
+  for (std::size_t i = 0; i < entries.size(); ++i) {
+    draw(i);
+    if (i == chosen) ImGui::SetItemDefaultFocus();
+    if (i == found) focusLastItem();
+    if (ImGui::IsItemFocused()) current = i;
+  }
+  if (found) current = *found;  // which has the focus from the next frame on
+}
+
 bool choose(const char* label, const std::vector<std::string>& words, int& value) {
-  bool changed = false;
-  if (!ImGui::BeginCombo(beginRow(label), words[std::size_t(value)].c_str())) return false;
-  for (int i = 0; i < int(words.size()); ++i)
-    if (ImGui::Selectable(words[std::size_t(i)].c_str(), i == value) && i != value) {
-      value = i;
-      changed = true;
-    }
+  const int before = value;
+  if (!ImGui::BeginCombo(beginRow(label), words[std::size_t(before)].c_str())) return false;
+  drawEntries(words, std::size_t(before), [&](std::size_t i) {
+    if (ImGui::Selectable(words[i].c_str(), int(i) == before)) value = int(i);
+  });
   ImGui::EndCombo();
-  return changed;
+  return value != before;
 }
 
 bool panelHeader(const char* name, bool hasImage, bool isOpenAtFirst) {

@@ -2,7 +2,9 @@
 // Widgets for the types of the options: a label at the left and the value at the right. All return whether the user changed the
 // value in this frame.
 
+#include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <glm/glm.hpp>
 #include <optional>
 #include <string>
@@ -43,6 +45,9 @@ bool slideOptional(const char* label, std::optional<double>& value, double usual
 /// `step` is the change for each pixel of a drag.
 bool dragVector(const char* label, glm::dvec3& value, double step);
 bool choose(const char* label, const std::vector<std::string>& words, int& value);
+/// Draws the entries of an open combo box by `draw`, which is given their numbers and whose last widget is the entry, of which `chosen` is
+/// current at first. Letters that are typed go to the next entry that begins with them (TypedText), as arrows do, and Enter chooses it.
+void drawEntries(const std::vector<std::string>& entries, std::size_t chosen, const std::function<void(std::size_t)>& draw);
 /// The value is not given if it is the usual one.
 template <typename Enum>
 bool choose(const char* label, const Words<Enum>& words, std::optional<Enum>& value, Enum usual) {

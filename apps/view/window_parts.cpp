@@ -4,7 +4,9 @@
 
 #include <algorithm>
 #include <filesystem>
+#include <limits>
 
+#include "apps/view/overlays.h"
 #include "engine/description/scene_description.h"
 
 namespace freevoxels {
@@ -71,12 +73,18 @@ void drawStatusBar(const ViewState& state, const Activity& activity, bool cancel
 
 void drawTurnHint() {
   const char* const text = "Drag to turn, Shift + drag to pan, wheel to zoom.  F1 lists all keys.";
-  const ImVec2 size = ImGui::CalcTextSize(text), low = ImGui::GetWindowPos(), room = ImGui::GetWindowSize();
-  const ImVec2 place(low.x + 0.5f * (room.x - size.x), low.y + room.y - 5.5f * size.y);  // above axes and scale bar
+  const ImVec2 corner = ImGui::GetWindowPos(), size = ImGui::GetWindowSize();
+  const ImageFrame free = betweenAxesAndScaleBar({corner, {corner.x + size.x, corner.y + size.y}});
+  const float line = 0.85f * ImGui::GetFontSize(), side = 0.6f * line, above = 0.25f * line, width = free.size().x - 2.0f * side;
+  if (width < line) return;
+  const ImVec2 textSize = ImGui::GetFont()->CalcTextSizeA(line, std::numeric_limits<float>::max(), width, text);
+  constexpr float kMostOfHeight = 0.125f;  // below a volume that fills the image as far as it is framed
+  const float height = textSize.y + 2.0f * above, bottom = corner.y + size.y - above;
+  if (height > kMostOfHeight * size.y) return;
+  const float left = std::max(std::min(corner.x + 0.5f * (size.x - textSize.x), free.high.x - side - textSize.x), free.low.x + side);
   ImDrawList& list = *ImGui::GetWindowDrawList();
-  list.AddRectFilled({place.x - size.y, place.y - 0.5f * size.y}, {place.x + size.x + size.y, place.y + 1.5f * size.y},
-                     IM_COL32(20, 22, 26, 215), size.y);
-  list.AddText(place, IM_COL32(235, 235, 240, 255), text);
+  list.AddRectFilled({left - side, bottom - height}, {left + textSize.x + side, bottom}, IM_COL32(20, 22, 26, 215), 0.5f * line);
+  list.AddText(ImGui::GetFont(), line, {left, bottom - height + above}, IM_COL32(235, 235, 240, 255), text, nullptr, width);
 }
 
 ImVec2 drawOverImage(const std::string& text, bool hasImage) {

@@ -32,7 +32,8 @@ using Activity = std::optional<std::pair<std::string, double>>;
 /// The last problem, `activity`, or the last notice, and the size and time of the image. `cancels`: the activity can be cancelled.
 void drawStatusBar(const ViewState& state, const Activity& activity, bool cancels, float top, float height);
 
-/// A line in the current part on how to turn, for those who have not turned yet.
+/// A text on how to turn, for those who have not turned yet: at the lower border of the current part, which shows the image, between axes
+/// and scale bar. Nothing where it would not be below the volume.
 void drawTurnHint();
 
 /// Writes a text into the middle of the last widget, which is the image, and dims the image if there is one. Returns the place below the

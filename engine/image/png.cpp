@@ -23,6 +23,7 @@
 #include "engine/core/error.h"
 #include "engine/core/input_file.h"
 #include "engine/core/printable.h"
+#include "engine/image/decode_png.h"
 #include "engine/image/display.h"
 #include "engine/image/srgb.h"
 
@@ -171,21 +172,18 @@ bool decodeRows(PngDecoder& decoder, Image& image) {
   return decoder.readEnd();
 }
 
-Image decode(const std::filesystem::path& file, std::FILE* stream) {
+Image decode(const std::string& name, std::FILE* stream, std::uint64_t fileBytes) {
   std::string problem;
   const auto refuse = [&]() {
-    fail(ErrorKind::Input, "cannot read '{}': it is not a complete PNG image ({}); write it again",
-         file.string(), printable(problem));
+    fail(ErrorKind::Input, "cannot read '{}': it is not a complete PNG image ({}); write it again", name, printable(problem));
   };
   PngDecoder decoder(stream, problem);
   if (!decoder.readHeader()) refuse();
   if (decoder.width() * decoder.height() > kMaximumPixels)
-    fail(ErrorKind::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image",
-         file.string(), decoder.width(), decoder.height());
+    fail(ErrorKind::Input, "cannot read '{}': {}x{} pixels are too many; choose a smaller image", name, decoder.width(), decoder.height());
   constexpr double kMaxShrinking = 1100.0;  // Deflate reaches 1032
-  const std::uint64_t fileBytes = std::filesystem::file_size(file);
   if (double(decoder.rowBytes()) * double(decoder.height()) > kMaxShrinking * double(fileBytes))
-    fail(ErrorKind::Input, "cannot read '{}': its header claims {}x{} pixels, which a file of {} bytes cannot hold; write it again", file.string(),
+    fail(ErrorKind::Input, "cannot read '{}': its header claims {}x{} pixels, which a file of {} bytes cannot hold; write it again", name,
          decoder.width(), decoder.height(), fileBytes);
   if (!decoder.begin()) refuse();
 
@@ -287,7 +285,15 @@ Image readPng(const std::filesystem::path& file) {
   const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(std::fopen(file.c_str(), "rb"), std::fclose);
   if (!stream)
     fail(ErrorKind::Input, "cannot read '{}': {}; check its permissions", file.string(), std::strerror(errno));
-  return decode(file, stream.get());
+  return decode(file.string(), stream.get(), std::filesystem::file_size(file));
+}
+
+Image decodePng(const std::string& name, std::span<const std::uint8_t> file) {
+  // The stream only reads the bytes.
+  const std::unique_ptr<std::FILE, int (*)(std::FILE*)> stream(fmemopen(const_cast<std::uint8_t*>(file.data()), file.size(), "rb"),
+                                                               std::fclose);
+  if (!stream) throw std::bad_alloc();
+  return decode(name, stream.get(), file.size());
 }
 
 std::vector<std::uint8_t> srgbTexels(const Image& image, const DisplayLook& look) {

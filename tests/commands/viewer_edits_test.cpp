@@ -142,6 +142,18 @@ TEST_F(Viewer, HandlesMoveTheBoxAndThePlaneThatClip) {
   expectQuietEnd(*session);
 }
 
+TEST_F(Viewer, ABakedVolumeIsClippedLikeOthers) {
+  expectSuccess(run("bake procedural:cube @cube.fvx --resolution 16 --quiet"));
+  const auto session = use("cube.fvx");
+  session->save('s', "image.png");                               // without one there is nothing to clip
+  session->hands("mousemove 143 125 click 1 mousemove 700 60");  // there is no row for the resolution
+  const nlohmann::json scene = sceneOf(*session, "clipped.json");
+  EXPECT_EQ(scene.at("input").at("clip-box").dump(), "[0,0,0,15,15,15]");
+  EXPECT_FALSE(scene.contains("classification")) << "it is the file's";
+  session->save('s', "clipped.png");
+  expectQuietEnd(*session);
+}
+
 TEST_F(Viewer, SlicesShowTheValuesAndGoToWhereTheyAreClicked) {
   const auto session = use("procedural:cloud --resolution 32");
   const auto save = [&](const char* name) {

@@ -44,6 +44,22 @@ TEST_F(Viewer, MenusAndChoicesAreGoneThroughWithArrowsEnterAndEscape) {
   expectQuietEnd(*session);  // by Ctrl+Q, though the menu is open
 }
 
+TEST_F(Viewer, AnEntryOfAListIsFoundByTypingHowItBegins) {
+  const auto session = use("procedural:cloud --resolution 16");
+  session->hands("windowsize @ 900 600");
+  session->save('s', "a.png");  // the panel Look is there from the first image on
+  const auto modeAfter = [&](const char* keys, const char* scene) {
+    session->hands("mousemove 230 229 click 1 sleep 0.5");
+    session->hands(keys);
+    session->hands("sleep 0.3 key Return sleep 0.3 mousemove 700 300");
+    return sceneOf(*session, scene).at("method").value("mode", "volume");
+  };
+  EXPECT_EQ(modeAfter("key a", "average.json"), "average");
+  EXPECT_EQ(modeAfter("key v key o", "volume.json"), "volume");
+  EXPECT_EQ(modeAfter("key m", "mip.json"), "mip");
+  expectQuietEnd(*session);
+}
+
 TEST_F(Viewer, LettersAreThoseOfTheKeyboardsLayout) {
   if (!installedProgram("setxkbmap")) GTEST_SKIP() << "setxkbmap is not installed: the keyboard has one layout here";
   for (const char* const layout : {"us", "de", "fr"}) {  // Z is elsewhere on a German keyboard, A and Q on a French one

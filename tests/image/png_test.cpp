@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "engine/core/error.h"
+#include "engine/image/decode_png.h"
 #include "engine/image/image.h"
 #include "engine/image/srgb.h"
 #include "tests/limited_disk.h"
@@ -143,6 +144,7 @@ TEST(Png, InMemoryIsWhatTheFileHolds) {
     writePng(folder / "a.png", image, look);
     const Bytes bytes = encodePng(image, look);
     EXPECT_EQ(readBytes(folder / "a.png"), std::string(bytes.begin(), bytes.end()));
+    EXPECT_EQ(decodePng("a.png", bytes).pixels, readPng(folder / "a.png").pixels);
   }
 }
 

@@ -40,6 +40,19 @@ TEST(Overlays, WorldPositionsHaveThePlacesThatTheyHaveInTheImage) {
   EXPECT_FALSE(frame.place(camera, {0.0, 0.0, 11.0})) << "behind the eye";
 }
 
+TEST(Overlays, WhatIsDrawnOverASmallImageTakesTurns) {
+  const ImageFrame frame{{100.0f, 50.0f}, {300.0f, 150.0f}};
+  OverlayRoom room(frame, 5.0f);
+  EXPECT_FALSE(room.take({90.0f, 60.0f}, {120.0f, 80.0f})) << "it begins left of the image";
+  EXPECT_FALSE(room.take({110.0f, 60.0f}, {211.0f, 80.0f})) << "wider than half of the image";
+  EXPECT_FALSE(room.take({110.0f, 60.0f}, {120.0f, 111.0f})) << "higher than half of it";
+  EXPECT_TRUE(room.take({110.0f, 100.0f}, {150.0f, 140.0f}));
+  EXPECT_FALSE(room.take({120.0f, 110.0f}, {130.0f, 120.0f})) << "in what was taken";
+  EXPECT_FALSE(room.take({154.0f, 100.0f}, {200.0f, 140.0f})) << "too near to that";
+  EXPECT_TRUE(room.take({156.0f, 100.0f}, {200.0f, 140.0f}));
+  EXPECT_TRUE(room.take({110.0f, 60.0f}, {200.0f, 94.0f})) << "above both";
+}
+
 TEST(Overlays, WhatIsDraggedStaysUnderTheMouse) {
   const ImageFrame frame{{10.0f, 20.0f}, {410.0f, 320.0f}};
   for (const bool orthographic : {false, true}) {

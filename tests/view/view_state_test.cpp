@@ -37,6 +37,19 @@ TEST(ViewState, TakesWhatTheFirstImageChoseUnlessTheFileFixesIt) {
   }
 }
 
+TEST(ViewState, ClippingKeepsTheDensityScaleUnlessTheFileHasIt) {
+  for (const bool isBaked : {false, true}) {
+    Volume volume;
+    if (isBaked) volume.classification = std::make_shared<const Classification>();
+    const Scene scene{.volume = std::make_shared<const Volume>(volume), .classification = {.densityScale = 3.0}};
+    ViewState state;
+    state.latest = std::make_shared<const DrawnImage>(DrawnImage{.request = {}, .scene = scene});
+    state.clip(VoxelBox{.first = glm::ivec3(1), .last = glm::ivec3(2)}, std::nullopt);
+    EXPECT_TRUE(state.scene.input.clipBox);
+    EXPECT_EQ(state.scene.classification.densityScale, isBaked ? std::nullopt : std::optional(3.0));
+  }
+}
+
 TEST_F(EditHistoryTest, UndoAndRedoGoThroughTheStepsInOrder) {
   for (const double stops : {1.0, 2.0, 3.0}) {
     expose(stops);
