@@ -101,6 +101,9 @@ const std::vector<OptionHelp> kVolumeHelp{
     {"up", "Up direction of the image [0,1,0; for scans and files of Blender 0,0,1]"},
     {"fov", fmt::format("Vertical field of view [{}]", Camera{}.verticalFov)},
     {"orthographic", "Orthographic projection; the image is HEIGHT world units high [perspective]"},
+    {"flight",
+     "Key frames of the camera and of lights, in place of the above: a file, or JSON that begins with {. A turntable draws the flight "
+     "through them in place of a turn, and one image shows the first of them [none]"},
     {"size",
      fmt::format("Image size in pixels, or one number for a square [{}x{}]", CameraDescription{}.size.x, CameraDescription{}.size.y)},
     {"holdout",
@@ -168,6 +171,9 @@ const std::vector<OptionHelp> kMethodHelp{
     {"lod",
      "Size on the image up to which blocks of voxels are drawn as one element; 0 always draws voxels, as does --composite "
      "sorted [1]",
+     true},
+    {"quality",
+     "Less than 1, down to 0.05, draws a draft: Q times as many rays along a pixel's edge, or splats of blocks 1/Q times as large [1]",
      true},
     {"culling", "Whether splats outside of the image are left out, and rays of the gather end early; --composite sorted draws all [yes]",
      true},

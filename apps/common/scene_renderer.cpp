@@ -1,6 +1,8 @@
 #include "apps/common/scene_renderer.h"
 
+#include <chrono>
 #include <functional>
+#include <limits>
 #include <utility>
 
 #include "apps/common/annotation.h"
@@ -95,11 +97,14 @@ void saveScene(const std::filesystem::path& file, const Json& keywords) {
 }
 
 std::unique_ptr<const KeywordOptions> readFrame(const Json& more, const Json& own, bool choosesDevice,
-                                                std::shared_ptr<const Holdout> holdout) {
+                                                std::shared_ptr<const Holdout> holdout, std::optional<double> budget) {
   for (const Json* given : {&more, &own}) refuseTurn(*given);
   auto options = std::make_unique<KeywordOptions>(std::vector{more, own}, KeywordOptions::sections(false, choosesDevice));
   options->scene.check();
   options->holdout = std::move(holdout);
+  if (budget && !(*budget > 0.0 && *budget < std::numeric_limits<double>::infinity()))
+    fail(ErrorKind::Usage, "{} is the time in milliseconds that a draft may take, more than 0, not {}", Parameter("budget"), *budget);
+  options->budget = budget;
   return options;
 }
 
@@ -141,7 +146,7 @@ void SceneRenderer::prepare(const KeywordOptions& options, std::optional<TurnSte
 void SceneRenderer::resolveView(const SceneDescription& description, std::optional<TurnStep> step) {
   if (step) {
     description.resolveView(scene_);
-    scene_.camera = description.cameras(scene_, step->frames)[std::size_t(step->frame)];
+    scene_.show(description.views(scene_, step->frames)[std::size_t(step->frame)]);
     return;
   }
   const CameraDescription& given = description.camera;
@@ -149,9 +154,10 @@ void SceneRenderer::resolveView(const SceneDescription& description, std::option
   own.camera = own_.camera;
   own.camera.size = given.size;
   own.camera.holdout = given.holdout;
+  own.camera.flight = given.flight;
   if (!given.position) own.camera.position.reset();  // an orbit has replaced it
   own.resolveView(scene_);
-  if (given == own.camera || description.method.slice) return;
+  if (given == own.camera || given.flight || description.method.slice) return;
   const glm::dvec2 ownAngles = own.camera.angles();
   const bool isMoved = !given.position && given.angles() != ownAngles;
   own.camera = given;
@@ -187,6 +193,17 @@ void SceneRenderer::classify(const SceneDescription& description) {
   classification_ = classification;
 }
 
+/// Chooses the quality from what frames have taken.
+void SceneRenderer::beginDraft(FrameSettings& settings, double budget) {
+  if (!draft_ || draft_->milliseconds() != budget) {
+    draft_ = DraftQuality(budget);
+    if (lastTime_) draft_->beginFrom(lastTime_->milliseconds, lastTime_->quality);
+  }
+  settings.quality = draft_->quality();
+  settings.scatteringCoarseness = 0;  // so that drafts and whole images share the light
+  settings.allowsOldLight = settings.quality < 1.0;
+}
+
 void SceneRenderer::complete(glm::ivec2 size) {
   context_->checkValidation();
   lastFrame_.set(kept_.takeTimings(), keywordsOf(scene_.camera, size));
@@ -202,10 +219,15 @@ auto SceneRenderer::draw(const KeywordOptions& options, std::optional<TurnStep> 
   const SceneDescription& description = options.scene;
   FrameSettings settings = frameSettings(description, depth);
   checkFrameFits(*context_->device, settings);
+  if (options.budget) beginDraft(settings, *options.budget);
   settings.holdout = options.holdout ? options.holdout : readHoldoutOf(description.camera, step);
   prepare(options, step, whole);
   settings.lighting = scene_.lighting;
-  auto drawn = std::invoke(work, kept_.get(source_, description, scene_, whole), scene_.camera, settings, whole);
+  Renderer& renderer = kept_.get(source_, description, scene_, whole);
+  const auto start = std::chrono::steady_clock::now();
+  auto drawn = std::invoke(work, renderer, scene_.camera, settings, whole);
+  lastTime_ = FrameTime{std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start).count(), settings.quality};
+  if (options.budget) draft_->took(lastTime_->milliseconds);
   if (progress) progress("complete", 1.0);
   complete(settings.size);
   return drawn;

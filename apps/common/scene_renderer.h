@@ -13,6 +13,7 @@
 #include "apps/common/keyword_options.h"
 #include "apps/common/last_frame.h"
 #include "apps/common/shared_volume.h"
+#include "engine/scene/draft_quality.h"
 
 namespace freevoxels {
 
@@ -34,11 +35,11 @@ std::vector<std::string> sceneWarnings(const std::filesystem::path& file);
 void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords);
 
 /// Reads the options of one frame: `own`, overridden by `more`. `choosesDevice`: whether they choose the device. `holdout` is in place of
-/// the file that they name; null if there is none. Fails for a turn.
+/// the file that they name; null if there is none. `budget`: KeywordOptions::budget. Fails for a turn, and for a budget that is no time.
 std::unique_ptr<const KeywordOptions> readFrame(const nlohmann::json& more, const nlohmann::json& own, bool choosesDevice,
-                                                std::shared_ptr<const Holdout> holdout = nullptr);
+                                                std::shared_ptr<const Holdout> holdout = nullptr, std::optional<double> budget = {});
 
-/// A frame of a full turn around the volume.
+/// A frame of a full turn around the volume, or of a flight.
 struct TurnStep {
   int frame = 0, frames = 1;  ///< 0 <= frame < frames
 };
@@ -58,14 +59,15 @@ class SceneRenderer {
   /// In a process forked from the renderer's own, what the renderer has on the device is given up, as it cannot be freed there.
   ~SceneRenderer();
 
-  /// Reads the options of a frame: the renderer's keywords, overridden by `more`. `holdout` as for readFrame().
-  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more, std::shared_ptr<const Holdout> holdout = nullptr) const {
-    return readFrame(more, keywords_, choosesDevice_, std::move(holdout));
+  /// Reads the options of a frame: the renderer's keywords, overridden by `more`. `holdout` and `budget` as for readFrame().
+  std::unique_ptr<const KeywordOptions> read(const nlohmann::json& more, std::shared_ptr<const Holdout> holdout = nullptr,
+                                             std::optional<double> budget = {}) const {
+    return readFrame(more, keywords_, choosesDevice_, std::move(holdout), budget);
   }
 
   /// Draws a frame, with channels. What frames share is made again only if the options change it.
   Image render(const KeywordOptions& options, const Aovs& channels, const Progress& progress);
-  /// Draws a frame of a turn, with the cameras and the light of `freevoxels turntable`. `options` have the camera of the turn.
+  /// Draws a frame of a turn or a flight, with the cameras and the light of `freevoxels turntable`. `options` have the camera of the turn.
   Image renderTurn(const KeywordOptions& options, TurnStep step, const Aovs& channels, const Progress& progress);
   /// The same frame, which stays on the device, complete.
   std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
@@ -88,6 +90,7 @@ class SceneRenderer {
   void classify(const SceneDescription& description);
   void resolveLikeFilm(const SceneDescription& description);
   void resolveView(const SceneDescription& description, std::optional<TurnStep> step);
+  void beginDraft(FrameSettings& settings, double budget);
   void complete(glm::ivec2 size);
 
   const std::shared_ptr<const SharedVolume> volume_;
@@ -106,6 +109,11 @@ class SceneRenderer {
   std::optional<std::string> classification_;   ///< the fields of which scene_.classification was made
   std::string added_;                           ///< the fields of which scene_.added was made
   KeptRenderer kept_;
+  std::optional<DraftQuality> draft_;  ///< of the last frame with a budget
+  struct FrameTime {
+    double milliseconds, quality;
+  };
+  std::optional<FrameTime> lastTime_;  ///< of the last frame, with what it made
 
   LastFrame lastFrame_;
 };

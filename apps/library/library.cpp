@@ -59,6 +59,10 @@ DeviceOptions limited(int mebibytes) {
   return options;
 }
 
+std::optional<double> budgetOf(const FrameOptions& options) {
+  return options.budget == 0.0 ? std::nullopt : std::optional(options.budget);
+}
+
 }  // namespace
 
 struct Frame::State {
@@ -216,8 +220,8 @@ Renderer& Renderer::operator=(Renderer&&) noexcept = default;
 Image Renderer::render(std::string_view scene, const FrameOptions& options) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(
-        renderer.render(*renderer.read(parseScene(scene), holdoutOf(options.holdout)), {.depth = options.depth}, options.progress));
+    return imageOf(renderer.render(*renderer.read(parseScene(scene), holdoutOf(options.holdout), budgetOf(options)),
+                                   {.depth = options.depth}, options.progress));
   });
 }
 
@@ -227,7 +231,7 @@ Image Renderer::renderTurn(int frame, int frames, std::string_view scene, const 
       fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames,
            Parameter("frames"), kMaximumFrames);
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene), holdoutOf(options.holdout)), {frame, frames},
+    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene), holdoutOf(options.holdout), budgetOf(options)), {frame, frames},
                                        {.depth = options.depth}, options.progress));
   });
 }
@@ -239,7 +243,7 @@ std::string Renderer::camera() const {
 Frame Renderer::submit(std::string_view scene, const FrameOptions& options) {
   return translated([&] {
     SceneRenderer& renderer = state_->renderer;
-    std::shared_ptr<const KeywordOptions> read = renderer.read(parseScene(scene), holdoutOf(options.holdout));
+    std::shared_ptr<const KeywordOptions> read = renderer.read(parseScene(scene), holdoutOf(options.holdout), budgetOf(options));
     auto frame = std::make_shared<SubmittedFrame>(
         renderer.context(),
         [&renderer, read = std::move(read), depth = options.depth](const freevoxels::Progress& report) {

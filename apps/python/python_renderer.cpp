@@ -47,18 +47,26 @@ std::unique_ptr<SceneRenderer> newRenderer(const py::args& arguments, const py::
   return makeRenderer(volume.cast<const PythonVolume&>(), keywords);
 }
 
+std::optional<double> budgetOf(const py::object& budget) {
+  if (budget.is_none()) return std::nullopt;
+  const Json number = jsonOf(budget, "budget");
+  if (!number.is_number()) fail(ErrorKind::Usage, "{} takes a number of milliseconds, not {}", Parameter("budget"), typeName(budget));
+  return number.get<double>();
+}
+
 py::object render(SceneRenderer& renderer, const py::args& more, const py::object& progress, const py::object& depth, const py::object& aov,
-                  py::kwargs keywords) {
+                  const py::object& budget, py::kwargs keywords) {
   refuseMore(more, "render()", "nothing");
   const Wanted wanted = wantedOf(depth, aov);
   const std::shared_ptr<const Holdout> holdout = takeHoldout(keywords);
   refusePlacement(keywords, "a volume");
   const Json options = jsonOf(keywords);
   const Progress report = progressOf(progress);
+  const std::optional<double> milliseconds = budgetOf(budget);
   Image image;
   {
     const py::gil_scoped_release withoutGil;
-    const std::unique_ptr<const KeywordOptions> frame = renderer.read(options, holdout);
+    const std::unique_ptr<const KeywordOptions> frame = renderer.read(options, holdout, milliseconds);
     for (const std::string& warning : frame->warnings) tellPython(warning, true);
     image = renderer.render(*frame, wanted.channels, report);
   }
@@ -156,7 +164,7 @@ py::object renderOnce(const py::args& arguments, const py::object& progress, con
   py::kwargs held;  // what may be an array is of the frame
   if (keywords.contains("holdout")) held["holdout"] = keywords.attr("pop")("holdout");
   if (py::isinstance<PythonVolume>(source))
-    return render(*makeRenderer(source.cast<const PythonVolume&>(), keywords), {}, progress, depth, aov, held);
+    return render(*makeRenderer(source.cast<const PythonVolume&>(), keywords), {}, progress, depth, aov, py::none(), held);
   const bool isFile = source.is_none() || isFileName(source);
   py::kwargs ofVolume, ofFrame;
   for (const auto& [key, value] : keywords) {
@@ -166,7 +174,7 @@ py::object renderOnce(const py::args& arguments, const py::object& progress, con
     if (!ofVolumeAlone) ofFrame[key] = value;
   }
   const PythonVolume volume = isFile ? volumeFromFile(source, {}, ofVolume) : volumeFromArray(py::args(py::make_tuple(source)), ofVolume);
-  return render(*makeRenderer(volume, ofFrame), {}, progress, depth, aov, held);
+  return render(*makeRenderer(volume, ofFrame), {}, progress, depth, aov, py::none(), held);
 }
 
 }  // namespace
@@ -193,16 +201,18 @@ void addRenderer(py::module_& module) {
            "turntable(self, frames, *, progress=None, depth=False, aov=None, **kwargs)\n--\n\n"
            "Yields the images of a full turn around the volume, as 'freevoxels turntable' draws them: the eye is as far away in all of\n"
            "them as the farthest needs, and the light does not move. Options hold for all frames; orbit is the place of the first.\n"
+           "With flight, key frames of camera and lights, the frames are at equal steps of time from the first key to the last.\n"
            "progress, depth and aov are those of render().")
-      .def("render", &render, "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(),
-           "render(self, *, progress=None, depth=False, aov=None, **kwargs)\n--\n\n"
+      .def("render", &render, "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(), "budget"_a = py::none(),
+           "render(self, *, progress=None, depth=False, aov=None, budget=None, **kwargs)\n--\n\n"
            "Returns float32 (height, width, 4): linear red, green and blue, multiplied by alpha, and alpha; row 0 is the top.\n"
            "With depth=True returns (image, depth), the latter float32 (height, width): mean distance along the viewing axis\n"
            "of what is seen, infinite where there is nothing. With aov='depth,position,normal,transmittance', or some of them, returns\n"
            "(image, dictionary of arrays), which save() writes. progress(stage, fraction) is called about every 50 ms of work,\n"
            "and at the end, with the fraction of the frame that is done, which never decreases and ends at 1;\n"
            "an exception that it raises abandons the frame. It may draw with other renderers. Options given here hold for this frame.\n"
-           "holdout may also be an array (height, width) of depths, such as this function returns.")
+           "holdout may also be an array (height, width) of depths, such as this function returns. With budget, in milliseconds, draws\n"
+           "a draft that is to take no longer, for what moves: its quality follows from the times of the frames before.")
       .def_property_readonly(
           "timings", [](const SceneRenderer& r) { return timingsOf(r.timings()); },
           "List of (stage, milliseconds): the stages that the last complete frame ran.")

@@ -69,6 +69,22 @@ TEST(Library, FramesOfOneRendererAreThoseOfSeparateOnes) {
   EXPECT_FALSE(shared.timings().empty());
 }
 
+TEST(Library, DraftsFollowTheirBudgetToTheWholeImageAndToTheLeastQuality) {
+  v1::Renderer renderer(cloud(), R"({"size": [96, 80], "density-scale": 20, "unlit": true})");
+  const v1::Image whole = renderer.render();
+  const v1::Image least = renderer.render(R"({"quality": 0.05})");
+  ASSERT_EQ(least.pixels.size(), whole.pixels.size());
+  EXPECT_NE(least.pixels, whole.pixels);
+  EXPECT_EQ(renderer.render("{}", {.budget = 1e-6}).pixels, least.pixels) << "no time at all";
+  std::vector<float> last;
+  for (int i = 0; i < 40 && last != whole.pixels; ++i) last = renderer.submit("{}", {.budget = 1e9}).image().pixels;
+  EXPECT_EQ(last, whole.pixels) << "all the time in the world";
+  EXPECT_EQ(renderer.render().pixels, whole.pixels);
+  for (const double none : {-1.0, std::numeric_limits<double>::quiet_NaN(), std::numeric_limits<double>::infinity()})
+    expectRefused(v1::ErrorKind::Usage, "budget", [&] { renderer.render("{}", {.budget = none}); });
+  expectRefused(v1::ErrorKind::Usage, "quality", [&] { renderer.render(R"({"quality": 0})"); });
+}
+
 /// Extinctions add up, whatever a volume is divided into.
 TEST(Library, TwoHalvesOfAVolumeAreTheVolume) {
   const std::string half = R"({"volume": "procedural:cloud", "resolution": 24, "density-scale": 10})";
@@ -176,6 +192,22 @@ TEST(Library, TurnsHaveOneDistanceAndTheirFramesAreNumbered) {
   }
   for (const auto& [frame, frames] : {std::pair(-1, 5), std::pair(5, 5), std::pair(0, 0), std::pair(0, 1 << 30)})
     expectError(v1::ErrorKind::Usage, "is not one of", [&] { renderer.renderTurn(frame, frames); }, {"frames"});
+}
+
+TEST(Library, FramesOfAFlightAreThoseOfItsCamerasAndLights) {
+  const std::string flight = R"({"size": [48, 40], "flight": {"keys": [
+      {"time": 0, "camera-position": [1, 1, 2], "look-at": [0, 0, 0], "light": [{"direction": [1, 1, 1]}]},
+      {"time": 2, "camera-position": [-1, 0, 2], "look-at": [0, 0, 0], "light": [{"direction": [-1, 1, 1]}]}]}})";
+  v1::Renderer renderer(cloud(), flight), single(cloud(), R"({"size": [48, 40]})");
+  const char* const frames[] = {R"({"camera-position": [1, 1, 2], "look-at": [0, 0, 0], "light": {"direction": [1, 1, 1]}})",
+                                R"({"camera-position": [-1, 0, 2], "look-at": [0, 0, 0], "light": {"direction": [-1, 1, 1]}})"};
+  for (const int frame : {1, 0}) EXPECT_EQ(renderer.renderTurn(frame, 2).pixels, single.render(frames[frame]).pixels) << frame;
+  EXPECT_EQ(renderer.render().pixels, single.render(frames[0]).pixels) << "one frame shows the first key";
+  EXPECT_EQ(single.render(flight).pixels, single.render(frames[0]).pixels) << "whose flight is the frame's own";
+  EXPECT_EQ(renderer.render(R"({"orbit": [90, 10]})").pixels, single.render(R"({"orbit": [90, 10]})").pixels) << "in place of the flight";
+  expectError(v1::ErrorKind::Usage, R"("orbit" and "flight" exclude each other)",
+              [&] { renderer.render(R"({"orbit": [90, 10], "flight": "f.json"})"); }, {"orbit", "flight"});
+  expectError(v1::ErrorKind::Input, "flight 'inline' has 0 keys", [&] { renderer.render(R"({"flight": {"keys": []}})"); });
 }
 
 TEST(Library, ProgressOfAFrameNeverDecreasesAndEndsAtOne) {

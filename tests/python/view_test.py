@@ -1,5 +1,6 @@
 """The view of a renderer: turntables, cameras that can be read, and frames between which neither size nor light change."""
 
+import json
 import os
 import pathlib
 import subprocess
@@ -35,6 +36,24 @@ class TurntableTest(unittest.TestCase):
                     self.assertEqual(pathlib.Path(f"{folder}/py.png").read_bytes(), files[number].read_bytes(), (source, number))
                 self.assertEqual(number, 4)
                 self.assertEqual(len(frames), 0)
+
+    def test_a_flight_is_that_of_the_command_line(self):
+        flight = {"keys": [{"time": 0, "camera_position": (1, 1, 2), "look_at": np.zeros(3), "fov": 30, "light": {"direction": (1, 1, 1)}},
+                           {"time": 1.5, "camera_position": (-1, 0, 2), "look_at": (0, 0.1, 0), "light": {"direction": (-1, 1, 1)}}]}
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "flight.json"
+            file.write_text(json.dumps(flight, default=np.ndarray.tolist))
+            made = subprocess.run([PROGRAM, "turntable", "procedural:cloud", f"{folder}/cli_#.png", "--frames=3", "--resolution=20", "--size=48x40",
+                                   f"--flight={file}"], capture_output=True, text=True)
+            self.assertEqual(made.returncode, 0, made.stderr)
+            volume = freevoxels.Volume.open("procedural:cloud", resolution=20)
+            of_renderer = freevoxels.Renderer(volume, size=(48, 40), flight=flight).turntable(3)
+            of_turn = freevoxels.Renderer(volume, size=(48, 40)).turntable(3, flight=file)
+            for number, (one, other) in enumerate(zip(of_renderer, of_turn)):
+                np.testing.assert_array_equal(one, other)
+                freevoxels.save(f"{folder}/py.png", one)
+                self.assertEqual((pathlib.Path(folder) / "py.png").read_bytes(), (pathlib.Path(folder) / f"cli_{number}.png").read_bytes(), number)
+            self.assertEqual(number, 2)
 
     def test_distance_is_the_same_for_all_frames(self):
         renderer = freevoxels.Renderer(freevoxels.Volume(LONG), size=(64, 48))
@@ -121,6 +140,17 @@ class ProgressTest(unittest.TestCase):
         for call in (renderer.render, lambda **more: freevoxels.render(LONG, size=(16, 12), **more), lambda **more: renderer.turntable(2, **more)):
             with self.assertRaisesRegex(freevoxels.UsageError, "'progress' takes a function of a stage and a fraction, not int"):
                 call(progress=5)
+
+    def test_drafts_have_all_pixels_and_follow_their_budget(self):
+        renderer = freevoxels.Renderer(freevoxels.Volume.open("procedural:cloud", resolution=32), size=(96, 80), unlit=True)
+        whole = renderer.render()
+        np.testing.assert_array_equal(renderer.render(budget=1e-6), renderer.render(quality=0.05))
+        self.assertFalse(np.array_equal(renderer.render(budget=1e-6), whole))
+        drafts = (renderer.render(budget=1e9) for _ in range(40))
+        self.assertTrue(any(np.array_equal(draft, whole) for draft in drafts))
+        for wrong in (0, -1, "soon"):
+            with self.assertRaisesRegex(freevoxels.UsageError, "'budget'"):
+                renderer.render(budget=wrong)
 
     def test_timings_are_of_the_frame_alone(self):
         renderer = freevoxels.Renderer(freevoxels.Volume.open("procedural:cloud", resolution=40), size=(48, 40))

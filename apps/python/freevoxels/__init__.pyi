@@ -53,6 +53,7 @@ class _Camera(TypedDict, total=False):
     up: _Triple
     fov: float
     orthographic: float
+    flight: _Path | Mapping[str, Any]  # a file, or {"keys": [{"time": 0, "camera-position": (x, y, z), "look-at": (x, y, z)}, ...]}
     size: Sequence_[int] | NDArray[Any] | str
     frames: int
     holdout: _Path | ArrayLike  # depths (height, width) in memory for render() alone
@@ -104,6 +105,7 @@ class _Method(TypedDict, total=False):
     path_length_correction: bool
     gradient: bool
     lod: float
+    quality: float
     culling: bool
     cull_threshold: float
     hierarchy_filter: Literal["geometric", "arithmetic"]
@@ -194,15 +196,18 @@ class Renderer:
     def __init__(self, volume: Volume, **kwargs: Unpack[_RendererOptions]) -> None: ...
     @overload
     def render(
-        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: None = ..., **kwargs: Unpack[_RendererOptions]
+        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: None = ...,
+        budget: float | None = ..., **kwargs: Unpack[_RendererOptions]
     ) -> _Image: ...
     @overload
     def render(
-        self, *, progress: _Progress | None = ..., depth: Literal[True], aov: None = ..., **kwargs: Unpack[_RendererOptions]
+        self, *, progress: _Progress | None = ..., depth: Literal[True], aov: None = ...,
+        budget: float | None = ..., **kwargs: Unpack[_RendererOptions]
     ) -> tuple[_Image, _Depth]: ...
     @overload
     def render(
-        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: str | Sequence_[str], **kwargs: Unpack[_RendererOptions]
+        self, *, progress: _Progress | None = ..., depth: Literal[False] = ..., aov: str | Sequence_[str],
+        budget: float | None = ..., **kwargs: Unpack[_RendererOptions]
     ) -> tuple[_Image, _Channels]: ...
     @overload
     def turntable(

@@ -165,6 +165,10 @@ struct FrameOptions {
   bool depth = false;  ///< whether Image::depth is made
   Progress progress = {};
   Holdout holdout = {};
+  /// Milliseconds within which the frame is to be drawn, while something moves; 0 draws the frame of the scene. Its quality, in place of
+  /// the scene's key "quality", follows from the times of the renderer's frames before, so that only the first ones after a change take
+  /// longer. A draft after another transfer function may have the light of the one before. ErrorKind::Usage below 0.
+  double budget = 0.0;
 };
 
 struct DeviceFrame;
@@ -213,7 +217,7 @@ class FREEVOXELS_API Renderer {
   /// Input for what is wrong in it, OutOfMemory with what the frame needs, and Device if the device is lost.
   Image render(std::string_view scene = "{}", const FrameOptions& options = {});
   /// Draws frame `frame` of a full turn of `frames`, with the cameras and the light of `freevoxels turntable`: the eye is as far away in
-  /// all of them as the farthest needs.
+  /// all of them as the farthest needs. With the key "flight" it is frame `frame` of a flight through key frames of camera and lights.
   Image renderTurn(int frame, int frames, std::string_view scene = "{}", const FrameOptions& options = {});
   /// Begins the same frame as render() and returns at once. Frames of a renderer are drawn in the order in which they were submitted.
   /// Throws for errors of `scene`; Frame::wait() throws those of drawing.
