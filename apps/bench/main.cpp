@@ -175,8 +175,9 @@ using Before = std::map<std::string, double>;
 
 Before readBefore(const std::string& file) {
   Before before;
+  const nlohmann::json figures = readJson("file of figures", file);
   try {
-    for (const nlohmann::json& stage : readJson("figures of the bench", file).at("stages"))
+    for (const nlohmann::json& stage : figures.at("stages"))
       before.emplace(stageOf(stage.at("stage").get<std::string>()), stage.at("milliseconds").get<double>());
   } catch (const nlohmann::json::exception&) {
     fail(ErrorKind::Input, "'{}' is not what freevoxels-bench --json writes: name such a file", file);

@@ -1,6 +1,6 @@
 #pragma once
 // Small images of the procedural volumes, which are in the program. They were drawn by
-// freevoxels render procedural:NAME apps/view/samples/NAME.png --size 96x72
+// freevoxels render procedural:NAME NAME.png --size 96x72
 
 #include <span>
 #include <string_view>
