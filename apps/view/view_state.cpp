@@ -56,6 +56,7 @@ void Edits::takeFlight() {
   CameraDescription& first = scene.camera;
   if (!first.flight) return;
   flight = readFlight(*first.flight);
+  scene.lighting = lightingOfFlight(scene.lighting, *first.flight);
   const CameraDescription given = std::exchange(first, flight.keys.front().camera);
   first.size = given.size;
   first.frames = given.frames;

@@ -26,7 +26,8 @@ struct Edits {
   /// The camera of the scene's options. Unknown before the first image, which resolves what is not given.
   std::optional<Camera> camera;
 
-  /// Makes the flight of the scene's options, if they have one, that of the panel, and begins at its first key. Fails as readFlight().
+  /// Makes the flight of the scene's options, if they have one, that of the panel, and begins with its first camera and lights. Fails as
+  /// readFlight().
   void takeFlight();
 };
 
