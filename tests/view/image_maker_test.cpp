@@ -49,6 +49,37 @@ TEST_F(ImageMakerTest, TurningALightKeepsTheVolumeAndItsOccupancy) {
   EXPECT_EQ(timesOf(turned, "bricks").size(), 0u);
 }
 
+/// As while a plane or a side of the box is dragged: the coarse volume is clipped, and drawn with half of the quality.
+TEST_F(ImageMakerTest, DraftsOfAClippedVolumeResembleTheWholeImage) {
+  ImageRequest request = litCloud();
+  request.scene.input.resolution = glm::ivec3(128);
+  request.scene.camera.size = {96, 96};
+  const DrawnImage unclipped = maker_.make(request, {});
+  const Image uncut = downloadImage(device(), *unclipped.image);
+  request.scene.camera.look(unclipped.scene.camera);
+  request.scene.classification.takeDensityScale(unclipped.scene.classification.densityScale);
+  const glm::ivec3 last = unclipped.scene.volume->dimensions - 1;
+  ImageMaker ofDrafts(device(), volumes_);
+  for (const int offset : {0, 5})
+    for (const bool byPlane : {true, false}) {
+      InputDescription& input = request.scene.input;
+      input.clipPlane.reset();
+      input.clipBox.reset();
+      if (byPlane)
+        input.clipPlane = ClipPlane{.point = glm::dvec3(0.01 * offset), .normal = {1.0, 0.5, 0.2}};
+      else
+        input.clipBox = VoxelBox{glm::ivec3(0), last - glm::ivec3(40 + offset, 0, 13)};
+      ImageRequest draft = request;
+      draft.purpose = Purpose::Edit;
+      draft.voxelsAlongEdge = 64;
+      draft.quality = ImageRequest::kSmallerBelow;
+      const Image whole = downloadImage(device(), *maker_.make(request, {}).image);
+      const double likeWhole = psnr(downloadImage(device(), *ofDrafts.make(draft, {}).image), whole);
+      EXPECT_GT(likeWhole, 25.0) << offset << " " << byPlane;
+      EXPECT_GT(likeWhole, psnr(uncut, whole) + 6.0) << offset << " " << byPlane;
+    }
+}
+
 TEST_F(ImageMakerTest, ASequenceIsSavedWithTheCameraOfTheImage) {
   const test::TemporaryFolder folder;
   Sequence sequence{.pattern = (folder.path() / "c_#.vdb").string(), .files = {}, .numbers = {}};
