@@ -3,7 +3,6 @@
 #include <fmt/format.h>
 #include <imgui.h>
 
-#include <algorithm>
 #include <utility>
 
 #include "apps/common/failure.h"
@@ -16,11 +15,11 @@ namespace freevoxels {
 namespace {
 
 constexpr double kBetweenKeys = 2.0;  // seconds after the last key at which another is added
-constexpr double kLeastStep = 0.01;   // seconds between keys
+constexpr double kLongestTime = 1e6;  // seconds
 
 /// Shows the flight at a time.
 void showFlight(ViewState& state, double time) {
-  if (!state.latest || state.flight.keys.size() < kMinFlightKeys) return;
+  if (!state.latest) return;
   try {
     const Flight flight = state.flight.resolve(*state.latest->scene.volume);
     state.setCamera(flight.cameraAt(time));
@@ -36,12 +35,13 @@ void showFlight(ViewState& state, double time) {
   }
 }
 
-/// Changes the time of a key, which stays between its neighbours.
+/// Changes the time of a key. Times that are not between those of its neighbours are not taken.
 bool editTime(std::vector<FlightKeyDescription>& keys, std::size_t i) {
-  double& time = keys[i].time;
+  double time = keys[i].time;
   if (!ImGui::InputDouble("##time", &time, 0.0, 0.0, "%.2f s")) return false;
-  if (i > 0) time = std::max(time, keys[i - 1].time + kLeastStep);
-  if (i + 1 < keys.size()) time = std::min(time, keys[i + 1].time - kLeastStep);
+  const bool isBehind = time > (i > 0 ? keys[i - 1].time : -kLongestTime);
+  if (!isBehind || !(time < (i + 1 < keys.size() ? keys[i + 1].time : kLongestTime))) return false;
+  keys[i].time = time;
   return true;
 }
 
@@ -71,7 +71,7 @@ void FlightPanel::drawKeys(ViewState& state) {
     ImGui::SameLine();
     ImGui::SetNextItemWidth(-widthOf("set") - widthOf("x") - 2.0f * style.ItemSpacing.x);
     state.retoned |= editTime(keys, i);
-    hint("Seconds at which the flight passes this key");
+    hint("Seconds at which the flight passes this key, between those of its neighbours");
     ImGui::SameLine();
     if (ImGui::Button("set")) {
       const double time = keys[i].time;

@@ -106,6 +106,18 @@ glm::dvec3 boxCorner(const Volume& volume, int i) {
   return glm::dvec3(volume.indexToWorld * glm::dvec4(index, 1.0));
 }
 
+/// The box of what is drawn, without voxels. The volume of a draft is not clipped.
+Volume shownBox(const DrawnImage& drawn) {
+  const Volume& volume = *drawn.scene.volume;
+  Volume box{.source = volume.source, .dimensions = volume.dimensions};
+  box.indexToWorld = volume.indexToWorld;
+  const std::optional<VoxelBox>& clipped = drawn.request.scene.input.clipBox;
+  if (!clipped || drawn.whole != drawn.scene.volume) return box;
+  box.dimensions = glm::min(clipped->last, volume.dimensions - 1) - clipped->first + 1;
+  box.indexToWorld[3] = volume.indexToWorld * glm::dvec4(glm::dvec3(clipped->first), 1.0);
+  return box;
+}
+
 void drawPlane(const Volume& volume, const ClipPlane& plane, const Camera& camera, const ImageFrame& frame) {
   std::vector<ImVec2> places;
   for (const glm::dvec3 corner : planeInBox(volume, plane))
@@ -304,7 +316,7 @@ void ClipHandles::addBox(const ViewState& state, const ImageFrame& frame) {
 void ClipHandles::addPlane(const ViewState& state, const ImageFrame& frame) {
   if (!state.scene.input.clipPlane) return;
   const ClipPlane& plane = *state.scene.input.clipPlane;
-  const Volume& volume = *state.latest->scene.volume;
+  const Volume volume = shownBox(*state.latest);
   glm::dvec3 middle(0.0);
   const std::vector<glm::dvec3> corners = planeInBox(volume, plane);
   for (const glm::dvec3 corner : corners) middle += corner / double(corners.size());
@@ -368,15 +380,16 @@ void drawOverlays(const ViewState& state, const ImageFrame& frame) {
   const bool isVolume = state.latest && state.diagnosis.shown == Shown::Image;
   const ClipHandles clip(state, frame);
   const bool showsBox = state.latest && (state.overlays.box || state.scene.input.clipBox);
-  if (showsBox) drawBox(*state.latest->scene.volume, camera, frame, ink);
-  if (state.latest && state.scene.input.clipPlane) drawPlane(*state.latest->scene.volume, *state.scene.input.clipPlane, camera, frame);
+  const Volume box = state.latest ? shownBox(*state.latest) : Volume();
+  if (showsBox) drawBox(box, camera, frame, ink);
+  if (state.latest && state.scene.input.clipPlane) drawPlane(box, *state.scene.input.clipPlane, camera, frame);
   // In the order of their importance: what has no room in a small image is left out, and so is what is less important.
   OverlayRoom room = roomOf(frame);
   bool hasRoom = !state.overlays.axes || drawAxes(camera, frame, ink, room);
   if (hasRoom && state.overlays.scaleBar)
     hasRoom = drawScaleBar(camera, frame, state.latest ? state.latest->scene.volume->lengthUnit : "", ink, room);
   if (hasRoom && state.overlays.colorBar && isVolume) hasRoom = drawColorBar(state, frame, ink, room);
-  if (hasRoom && showsBox) drawCorners(*state.latest->scene.volume, camera, frame, ink, room);
+  if (hasRoom && showsBox) drawCorners(box, camera, frame, ink, room);
   if (isVolume && !state.scene.lighting.unlit) drawLights(state, frame);
   const ClipHandles::Handle* const hovered = clip.hovered();
   for (const ClipHandles::Handle& handle : clip.handles) {

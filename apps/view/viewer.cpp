@@ -34,7 +34,6 @@ constexpr float kPanelWidth = 340.0f, kMinPanelWidth = 240.0f;
 constexpr float kMinSlicesShare = 0.1f, kMaxSlicesShare = 0.8f;  // of the image's width
 
 constexpr std::chrono::milliseconds kPaint{60};      // between frames while an image is made that is wanted soon
-constexpr std::chrono::milliseconds kFade{140};      // from a quick image to the whole one
 constexpr std::chrono::milliseconds kOneEdit{400};   // after which a change is another step to undo
 constexpr std::chrono::milliseconds kLongestEnd{150};  // for threads to abandon what they do
 constexpr double kIdleSeconds = 0.25;                // between frames in which nothing happens
@@ -44,10 +43,6 @@ std::string titleOf(const ViewState& state) {
   return printable(state.scene.input.volume) + " - FreeVoxels";
 }
 
-void makeTexture(const Device& device, std::unique_ptr<Texture>& texture, glm::ivec2 size) {
-  if (!texture || texture->size() != size) texture = std::make_unique<Texture>(device, size, "image");
-}
-
 }  // namespace
 
 Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const ViewOptions& options)
@@ -55,7 +50,7 @@ Viewer::Viewer(const WindowSystem& windows, const Instance& instance, const View
       window_(windows, "FreeVoxels", kWindowSize),
       devices_(instance, options.device, options.showOn),
       swapchain_(instance, devices_.showing(), window_),
-      display_(devices_.showing()),
+      shown_(devices_),
       state_{{.scene = options.scene.description, .sequence = options.sequence}},
       store_(options.screenshot ? std::filesystem::path() : sessionFolder()),
       dialog_(devices_.showing(), store_),
@@ -92,39 +87,8 @@ void Viewer::opened(const std::string& file) {
 
 void Viewer::takeImages() {
   std::exception_ptr failure;
-  if (director_.take(state_, failure)) showLatest();
+  if (director_.take(state_, failure)) shown_.show(state_.latest, state_.latest == state_.whole && state_.scene.output.look().background);
   if (options_.screenshot && failure) std::rethrow_exception(failure);
-}
-
-void Viewer::showLatest() {
-  newImage_ = true;
-  drawn_ = state_.latest;
-  const DrawnImage& drawn = *drawn_;
-  if (!devices_.areOne()) {
-    onShowing_ = devices_.moved(*drawn.shown);
-    if (drawn.compared) comparedOnShowing_ = devices_.moved(*drawn.compared);
-  }
-  const bool isWhole = state_.latest == state_.whole;
-  before_ = nullptr;
-  if (isWhole && texture_ && state_.scene.output.look().background) before_ = std::move(texture_);
-  shown_ = Clock::now();
-  makeTexture(devices_.showing(), texture_, drawn.shown->size());
-  if (drawn.compared)
-    makeTexture(devices_.showing(), comparedTexture_, drawn.compared->size());
-  else
-    comparedTexture_ = nullptr;
-}
-
-bool Viewer::fades() const {
-  return before_ && Clock::now() - shown_ < kFade;
-}
-
-/// Before the panels, which show the textures.
-void Viewer::recordImage(Commands& commands) const {
-  if (!newImage_) return;
-  const DisplayLook look = state_.scene.output.look();
-  display_.record(commands, devices_.areOne() ? *drawn_->shown : onShowing_, look, *texture_);
-  if (comparedTexture_) display_.record(commands, devices_.areOne() ? *drawn_->compared : comparedOnShowing_, look, *comparedTexture_);
 }
 
 std::array<ActionState, kActions> Viewer::actionStates() const {
@@ -220,11 +184,7 @@ void Viewer::drawOpening() {
 
 void Viewer::drawImage(float left, float width, float top, float height) {
   beginPart("image", {left, top}, {width, height}, {0.0f, 0.0f}, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
-  const std::chrono::duration<float> since = Clock::now() - shown_;
-  area_.draw(state_, {.image = texture_.get(),
-                      .before = fades() ? before_.get() : nullptr,
-                      .compared = comparedTexture_.get(),
-                      .weight = since / std::chrono::duration<float>(kFade)});
+  area_.draw(state_, shown_.textures());
   if (state_.overlays.slices) slices_.drawOutlines(state_, {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()});
   if (isOpening()) drawOpening();
   if (!options_.screenshot && !store_.knowsHowToTurn() && state_.camera) drawTurnHint();
@@ -308,7 +268,7 @@ void Viewer::act() {
   history_.follow(state_, edited_, busy);
   cameras_.follow(state_, moved, busy);
   if (state_.retoned) {
-    newImage_ = drawn_ != nullptr;
+    shown_.retone();
     state_.retoned = false;
   }
   takeOutput();
@@ -330,8 +290,8 @@ void Viewer::takeOutput() {
 
 /// On a processor that draws it all, a window painted at every move of the mouse leaves no time for images.
 bool Viewer::paints() const {
-  const bool waits = !state_.answered && texture_;
-  return !waits || newImage_ || Clock::now() - painted_ >= kPaint;
+  const bool waits = !state_.answered && shown_.exists();
+  return !waits || shown_.isNew() || Clock::now() - painted_ >= kPaint;
 }
 
 void Viewer::drawFrame() {
@@ -346,9 +306,8 @@ void Viewer::drawFrame() {
   director_.ask(state_, area_.pixels(), area_.moves() || plays());
   if (!paint) return;
   painted_ = Clock::now();
-  painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { recordImage(commands); });
-  newImage_ = false;
-  if (!fades()) before_ = nullptr;
+  painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { shown_.record(commands, state_.scene.output.look()); });
+  shown_.painted();
   if (director_.isComplete(state_) && !look_.waits() && !grids_.isMaking()) ++completeFrames_;
   if (options_.screenshot && completeFrames_ == options_.after.value_or(1)) writeScreenshot();
   swapchain_.present();
@@ -364,7 +323,7 @@ void Viewer::rememberOpened() {
   if (!director_.isComplete(state_) || state_.scene.input.volume != openedVolume_) return;
   if (!opened_.empty() && isWorthRemembering(opened_)) store_.remember(opened_);
   opened_.clear();
-  if (thumbnailOf_.empty() || fades() || options_.screenshot) return;
+  if (thumbnailOf_.empty() || shown_.fades() || options_.screenshot) return;
   store_.storeThumbnail(thumbnailOf_, downloadImage(devices_.drawing(), *state_.whole->image), state_.scene.output.look());
   thumbnailOf_.clear();
 }
@@ -381,8 +340,8 @@ void Viewer::storeLastScene() {
 
 /// Until something is to be done, if nothing happens.
 double Viewer::patience() const {
-  if (options_.screenshot || window_.inputWaits() || newImage_) return 0.0;
-  const bool busy = area_.moves() || fades() || !director_.isSettled() || plays();
+  if (options_.screenshot || window_.inputWaits() || shown_.isNew()) return 0.0;
+  const bool busy = area_.moves() || shown_.fades() || !director_.isSettled() || plays();
   return busy ? kSoonSeconds : kIdleSeconds;
 }
 

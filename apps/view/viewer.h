@@ -14,6 +14,7 @@
 #include "apps/view/light_panel.h"
 #include "apps/view/look_panel.h"
 #include "apps/view/session_store.h"
+#include "apps/view/shown_image.h"
 #include "apps/view/slice_view.h"
 #include "apps/view/swapchain.h"
 #include "apps/view/ui_painter.h"
@@ -22,7 +23,6 @@
 #include "apps/view/volume_panel.h"
 #include "apps/view/window.h"
 #include "apps/view/window_devices.h"
-#include "engine/image/display_pass.h"
 
 namespace freevoxels {
 
@@ -40,10 +40,7 @@ class Viewer {
   using Clock = std::chrono::steady_clock;
 
   void takeImages();
-  void showLatest();
-  void recordImage(Commands& commands) const;
   bool paints() const;
-  bool fades() const;
   void drawFrame();
   void drawWindow();
   void drawSidePanel(float top, float width, float height);
@@ -70,10 +67,7 @@ class Viewer {
   const WindowDevices devices_;
   Swapchain swapchain_;
   std::unique_ptr<UiPainter> painter_;
-  DisplayPass display_;
-  std::shared_ptr<const DrawnImage> drawn_;  ///< of the textures
-  RenderTarget onShowing_, comparedOnShowing_;  ///< of drawn_, on the device that draws the window, where that is another one
-  std::unique_ptr<Texture> texture_, before_, comparedTexture_;
+  ShownImage shown_;
 
   ViewState state_;
   EditHistory history_;
@@ -98,8 +92,7 @@ class Viewer {
   std::string opened_;                 ///< that file, until its image is complete
   std::string thumbnailOf_;            ///< the opened file that has no thumbnail yet
   bool edited_ = false;                ///< in the last frame
-  Clock::time_point lastEdit_, painted_, shown_;
-  bool newImage_ = false;  ///< in state_.latest, and not in the textures yet
+  Clock::time_point lastEdit_, painted_;
   int completeFrames_ = 0;
 };
 

@@ -14,7 +14,7 @@ struct FlightKey {
   std::vector<Light> lights;  ///< none where the key says nothing of them
 };
 
-/// At least two keys in ascending order of time, with cameras that pass checkCamera, all perspective or all orthographic.
+/// One key or more in ascending order of time, with cameras that pass checkCamera, all perspective or all orthographic.
 struct Flight {
   std::vector<FlightKey> keys;
 
