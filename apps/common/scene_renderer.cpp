@@ -41,7 +41,7 @@ void refuseNan(const Image& image) {
 /// What ends the rays of a frame; null if nothing does.
 std::shared_ptr<const Holdout> readHoldoutOf(CameraDescription camera, std::optional<TurnStep> step) {
   if (step)
-    camera.holdout = holdoutOfTurn(camera, step->frame, step->frames);
+    camera.holdout = holdoutOfTurn(camera, step->frame, step->turn.frames);
   else if (camera.holdout && isPattern(*camera.holdout))
     fail(ErrorKind::Usage, "'{}' names an image for each frame of a turn or a film, and this is one frame: name its image in {}",
          *camera.holdout, Parameter("holdout"));
@@ -99,12 +99,16 @@ void saveScene(const std::filesystem::path& file, const Json& keywords) {
 std::unique_ptr<const KeywordOptions> readFrame(const Json& more, const Json& own, bool choosesDevice,
                                                 std::shared_ptr<const Holdout> holdout, std::optional<double> budget) {
   for (const Json* given : {&more, &own}) refuseTurn(*given);
-  auto options = std::make_unique<KeywordOptions>(std::vector{more, own}, KeywordOptions::sections(false, choosesDevice));
-  options->scene.check();
-  options->holdout = std::move(holdout);
+  KeywordOptions options(std::vector{more, own}, KeywordOptions::sections(false, choosesDevice));
+  options.scene.check();
+  return std::make_unique<const KeywordOptions>(withFrame(std::move(options), std::move(holdout), budget));
+}
+
+KeywordOptions withFrame(KeywordOptions options, std::shared_ptr<const Holdout> holdout, std::optional<double> budget) {
   if (budget && !(*budget > 0.0 && *budget < std::numeric_limits<double>::infinity()))
     fail(ErrorKind::Usage, "{} is the time in milliseconds that a draft may take, more than 0, not {}", Parameter("budget"), *budget);
-  options->budget = budget;
+  options.holdout = std::move(holdout);
+  options.budget = budget;
   return options;
 }
 
@@ -136,19 +140,30 @@ void SceneRenderer::resolveLikeFilm(const SceneDescription& description) {
 
 /// Resolves scene_ for a frame, as a part of the film if there is one.
 void SceneRenderer::prepare(const KeywordOptions& options, std::optional<TurnStep> step, const Progress& progress) {
-  takeSource(options.scene, step ? step->frames : 1, progress);
+  takeSource(options.scene, step, progress);
   if (film_) return resolveLikeFilm(options.scene);
   classify(options.scene);
-  resolveView(options.scene, step);
+  if (step)
+    resolveTurn(options.scene, *step);
+  else
+    resolveView(options.scene);
 }
 
-/// Resolves camera and light of scene_.
-void SceneRenderer::resolveView(const SceneDescription& description, std::optional<TurnStep> step) {
-  if (step) {
+/// Resolves camera and light of scene_ for a frame of a turn.
+void SceneRenderer::resolveTurn(const SceneDescription& description, TurnStep step) {
+  TurnViews& turn = step.turn;
+  if (turn.ofFrames.empty()) {
     description.resolveView(scene_);
-    scene_.show(description.views(scene_, step->frames)[std::size_t(step->frame)]);
-    return;
+    turn.need = need_;
+    turn.lighting = scene_.lighting;
+    turn.ofFrames = description.views(scene_, turn.frames);
   }
+  scene_.lighting = turn.lighting;
+  scene_.show(turn.ofFrames[std::size_t(step.frame)]);
+}
+
+/// Resolves camera and light of scene_ for a single frame.
+void SceneRenderer::resolveView(const SceneDescription& description) {
   const CameraDescription& given = description.camera;
   SceneDescription own = description;
   own.camera = own_.camera;
@@ -167,8 +182,9 @@ void SceneRenderer::resolveView(const SceneDescription& description, std::option
 }
 
 /// Takes the level of detail that a frame needs.
-void SceneRenderer::takeSource(const SceneDescription& description, int frames, const Progress& progress) {
-  const BakedNeed need = volume_->needOf(description, frames);
+void SceneRenderer::takeSource(const SceneDescription& description, std::optional<TurnStep> step, const Progress& progress) {
+  const bool isKnown = step && !step->turn.ofFrames.empty();
+  const BakedNeed need = isKnown ? step->turn.need : volume_->needOf(description, step ? step->turn.frames : 1);
   if (source_ && need == need_) return;
   kept_.release();  // with the volume of the source before: not both at once
   scene_.volume = nullptr;

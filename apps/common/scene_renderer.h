@@ -39,9 +39,23 @@ void saveScene(const std::filesystem::path& file, const nlohmann::json& keywords
 std::unique_ptr<const KeywordOptions> readFrame(const nlohmann::json& more, const nlohmann::json& own, bool choosesDevice,
                                                 std::shared_ptr<const Holdout> holdout = nullptr, std::optional<double> budget = {});
 
-/// A frame of a full turn around the volume, or of a flight.
+/// The options with what a frame has besides its scene, as for readFrame().
+KeywordOptions withFrame(KeywordOptions options, std::shared_ptr<const Holdout> holdout, std::optional<double> budget);
+
+/// What the frames of a full turn around the volume, or of a flight, show. The first frame that is drawn resolves it for all, so that they
+/// are of one flight even if its file changes. It belongs to one renderer and one scene.
+struct TurnViews {
+  int frames = 1;
+  // While the turn of the renderer's context is held:
+  BakedNeed need;
+  std::optional<Lighting> lighting;
+  std::vector<FrameView> ofFrames;  ///< empty before a frame was drawn
+};
+
+/// A frame of a turn.
 struct TurnStep {
-  int frame = 0, frames = 1;  ///< 0 <= frame < frames
+  int frame = 0;  ///< 0 <= frame < turn.frames
+  TurnViews& turn;
 };
 
 /// The view belongs to the renderer: its own keywords choose the distance of the eye, the look-at point and the default lights, and the
@@ -67,7 +81,8 @@ class SceneRenderer {
 
   /// Draws a frame, with channels. What frames share is made again only if the options change it.
   Image render(const KeywordOptions& options, const Aovs& channels, const Progress& progress);
-  /// Draws a frame of a turn or a flight, with the cameras and the light of `freevoxels turntable`. `options` have the camera of the turn.
+  /// Draws a frame of a turn or a flight, with the cameras and the light of `freevoxels turntable`. `options` have the camera of the turn,
+  /// and but for holdout and budget are the same for all frames of `step.turn`.
   Image renderTurn(const KeywordOptions& options, TurnStep step, const Aovs& channels, const Progress& progress);
   /// The same frame, which stays on the device, complete.
   std::shared_ptr<const FrameTargets> renderOnDevice(const KeywordOptions& options, bool depth, const Progress& progress);
@@ -86,10 +101,11 @@ class SceneRenderer {
   Image drawSlice(const KeywordOptions& options, const Aovs& channels, const Progress& progress);
   template <typename Work>
   auto draw(const KeywordOptions& options, std::optional<TurnStep> step, bool depth, const Progress& progress, const Work& work);
-  void takeSource(const SceneDescription& description, int frames, const Progress& progress);
+  void takeSource(const SceneDescription& description, std::optional<TurnStep> step, const Progress& progress);
   void classify(const SceneDescription& description);
   void resolveLikeFilm(const SceneDescription& description);
-  void resolveView(const SceneDescription& description, std::optional<TurnStep> step);
+  void resolveTurn(const SceneDescription& description, TurnStep step);
+  void resolveView(const SceneDescription& description);
   void beginDraft(FrameSettings& settings, double budget);
   void complete(glm::ivec2 size);
 

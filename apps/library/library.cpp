@@ -5,6 +5,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 #include <nlohmann/json.hpp>
 
 #include "apps/common/keyword_options.h"
@@ -63,6 +65,30 @@ std::optional<double> budgetOf(const FrameOptions& options) {
   return options.budget == 0.0 ? std::nullopt : std::optional(options.budget);
 }
 
+/// A turn of which frames are drawn.
+struct DrawnTurn {
+  std::string scene;
+  int firstFrame = 0;  ///< that was drawn
+  std::unique_ptr<const KeywordOptions> options;
+  TurnViews views;
+};
+
+/// The turn of the frame that was drawn last. Any thread may call the member function.
+class LastTurn {
+ public:
+  /// The turn of this frame: the last one, unless that is another, or the frame began it and so begins it again.
+  std::shared_ptr<DrawnTurn> get(const SceneRenderer& renderer, int frame, int frames, std::string_view scene) {
+    const std::lock_guard lock(mutex_);
+    if (!turn_ || turn_->scene != scene || turn_->views.frames != frames || turn_->firstFrame == frame)
+      turn_ = std::make_shared<DrawnTurn>(DrawnTurn{std::string(scene), frame, renderer.read(parseScene(scene)), {.frames = frames}});
+    return turn_;
+  }
+
+ private:
+  std::mutex mutex_;
+  std::shared_ptr<DrawnTurn> turn_;
+};
+
 }  // namespace
 
 struct Frame::State {
@@ -71,6 +97,7 @@ struct Frame::State {
 
 struct Renderer::State {
   SceneRenderer renderer;
+  LastTurn turn;
   FrameQueue queue;  // last, as it draws with `renderer`
 };
 
@@ -205,12 +232,12 @@ DeviceFrame deviceFrame(const Frame& frame) {
 
 Renderer::Renderer(const Context& context, Volume volume, std::string_view scene)
     : state_(translated([&] {
-        return std::unique_ptr<State>(new State{SceneRenderer(volume.state_->volume, parseScene(scene), context.state_->context), {}});
+        return std::unique_ptr<State>(new State{SceneRenderer(volume.state_->volume, parseScene(scene), context.state_->context), {}, {}});
       })) {}
 
 Renderer::Renderer(Volume volume, std::string_view scene)
     : state_(translated([&] {
-        return std::unique_ptr<State>(new State{SceneRenderer(volume.state_->volume, parseScene(scene)), {}});
+        return std::unique_ptr<State>(new State{SceneRenderer(volume.state_->volume, parseScene(scene)), {}, {}});
       })) {}
 
 Renderer::~Renderer() = default;
@@ -231,7 +258,8 @@ Image Renderer::renderTurn(int frame, int frames, std::string_view scene, const 
       fail(freevoxels::ErrorKind::Usage, "frame {} is not one of {} {}, which are numbered from 0: there are 1 to {}", frame, frames,
            Parameter("frames"), kMaximumFrames);
     SceneRenderer& renderer = state_->renderer;
-    return imageOf(renderer.renderTurn(*renderer.read(parseScene(scene), holdoutOf(options.holdout), budgetOf(options)), {frame, frames},
+    const std::shared_ptr<DrawnTurn> turn = state_->turn.get(renderer, frame, frames, scene);
+    return imageOf(renderer.renderTurn(withFrame(*turn->options, holdoutOf(options.holdout), budgetOf(options)), {frame, turn->views},
                                        {.depth = options.depth}, options.progress));
   });
 }

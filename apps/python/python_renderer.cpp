@@ -77,15 +77,16 @@ py::object render(SceneRenderer& renderer, const py::args& more, const py::objec
 struct Turntable {
   py::object renderer, progress;
   std::shared_ptr<const KeywordOptions> options;
-  int frames = 0, next = 0;
+  TurnViews turn;
+  int next = 0;
   Wanted wanted;
 
   py::object draw() {
-    if (next == frames) throw py::stop_iteration();
+    if (next == turn.frames) throw py::stop_iteration();
     auto& drawn = renderer.cast<SceneRenderer&>();
     const Progress report = progressOf(progress);
     const std::shared_ptr<const KeywordOptions> ofTurn = options;
-    const TurnStep step{next, frames};
+    const TurnStep step{next, turn};
     Image image;
     {
       const py::gil_scoped_release withoutGil;
@@ -110,7 +111,7 @@ Turntable turntableOf(const py::object& renderer, const py::object& count, const
   return {.renderer = renderer,
           .progress = progress,
           .options = renderer.cast<SceneRenderer&>().read(jsonOf(keywords)),
-          .frames = int(frames),
+          .turn = {.frames = int(frames)},
           .wanted = wantedOf(depth, aov)};
 }
 
@@ -184,7 +185,7 @@ void addRenderer(py::module_& module) {
   py::class_<Turntable>(module, "_Turntable", "The images of a full turn, in order. Each is drawn when it is asked for.")
       .def("__iter__", [](const py::object& self) { return self; })
       .def("__next__", &Turntable::draw)
-      .def("__len__", [](const Turntable& turn) { return turn.frames - turn.next; });
+      .def("__len__", [](const Turntable& turntable) { return turntable.turn.frames - turntable.next; });
   py::class_<SceneRenderer>(module, "Renderer",
                             "Renderer(volume, **kwargs)\n--\n\n"
                             "Renders one volume many times. What frames have in common, the attenuation table above all, is\n"
@@ -202,7 +203,7 @@ void addRenderer(py::module_& module) {
            "Yields the images of a full turn around the volume, as 'freevoxels turntable' draws them: the eye is as far away in all of\n"
            "them as the farthest needs, and the light does not move. Options hold for all frames; orbit is the place of the first.\n"
            "With flight, key frames of camera and lights, the frames are at equal steps of time from the first key to the last.\n"
-           "progress, depth and aov are those of render().")
+           "The file of a flight may change as soon as the first image is drawn. progress, depth and aov are those of render().")
       .def("render", &render, "progress"_a = py::none(), "depth"_a = false, "aov"_a = py::none(), "budget"_a = py::none(),
            "render(self, *, progress=None, depth=False, aov=None, budget=None, **kwargs)\n--\n\n"
            "Returns float32 (height, width, 4): linear red, green and blue, multiplied by alpha, and alpha; row 0 is the top.\n"

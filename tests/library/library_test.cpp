@@ -210,6 +210,38 @@ TEST(Library, FramesOfAFlightAreThoseOfItsCamerasAndLights) {
   expectError(v1::ErrorKind::Input, "flight 'inline' has 0 keys", [&] { renderer.render(R"({"flight": {"keys": []}})"); });
 }
 
+TEST(Library, FramesOfATurnAreOfTheFlightThatTheFirstOfThemHasRead) {
+  const test::TemporaryFolder folder;
+  const auto flightTo = [](const char* end) {
+    return fmt::format(R"({{"keys": [
+        {{"time": 0, "camera-position": [1, 1, 2], "look-at": [0, 0, 0], "light": [{{"direction": [1, 1, 1]}}]}},
+        {{"time": 2, "camera-position": {}, "look-at": [0, 0, 0], "light": [{{"direction": {}}}]}}]}})",
+                       end, end);
+  };
+  const std::string first = flightTo("[-1, 0, 2]"), second = flightTo("[2, 1, -1]");
+  const std::filesystem::path file = folder / "flight.json";
+  const std::string scene = nlohmann::json{{"flight", file.string()}}.dump();
+  v1::bake(cloud(), folder / "cloud.fvx");
+  for (const v1::Volume& volume : {cloud(), v1::Volume::open(folder / "cloud.fvx")}) {
+    v1::Renderer renderer(volume, R"({"size": [48, 40]})"), other(volume, R"({"size": [48, 40]})");
+    const auto expectFrame = [&](int frame, const std::string& flight) {
+      EXPECT_EQ(renderer.renderTurn(frame, 3, scene).pixels, other.renderTurn(frame, 3, R"({"flight": )" + flight + "}").pixels) << frame;
+    };
+    test::writeBytes(file, first);
+    expectFrame(0, first);
+    test::writeBytes(file, second);
+    expectFrame(1, first);
+    std::filesystem::remove(file);
+    expectFrame(2, first);
+    expectFrame(1, first);
+    expectRefused(v1::ErrorKind::Input, "flight.json", [&] { renderer.renderTurn(1, 4, scene); });
+    expectRefused(v1::ErrorKind::Input, "flight.json", [&] { renderer.renderTurn(0, 3, scene); });
+    test::writeBytes(file, second);
+    expectFrame(0, second);
+    expectFrame(2, second);
+  }
+}
+
 TEST(Library, ProgressOfAFrameNeverDecreasesAndEndsAtOne) {
   v1::Renderer renderer(cloud(), R"({"size": [600, 500]})");
   for (const char* scene : {"{}", R"({"draw": "splats"})", R"({"orbit": [3, 4]})"}) {

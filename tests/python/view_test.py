@@ -55,6 +55,26 @@ class TurntableTest(unittest.TestCase):
                 self.assertEqual((pathlib.Path(folder) / "py.png").read_bytes(), (pathlib.Path(folder) / f"cli_{number}.png").read_bytes(), number)
             self.assertEqual(number, 2)
 
+    def test_frames_of_a_turntable_are_of_the_flight_that_the_first_of_them_has_read(self):
+        flight = {"keys": [{"time": 0, "camera_position": (1, 1, 2), "look_at": (0, 0, 0), "light": {"direction": (1, 1, 1)}},
+                           {"time": 1, "camera_position": (-1, 0, 2), "look_at": (0, 0, 0), "light": {"direction": (-1, 1, 1)}}]}
+        changed = {"keys": [flight["keys"][0], {**flight["keys"][1], "camera_position": (2, 1, -1)}]}
+        renderer = freevoxels.Renderer(freevoxels.Volume.open("procedural:cloud", resolution=20), size=(48, 40))
+        expected = list(renderer.turntable(3, flight=flight))
+        with tempfile.TemporaryDirectory() as folder:
+            file = pathlib.Path(folder) / "flight.json"
+            file.write_text(json.dumps(flight))
+            turn = renderer.turntable(3, flight=file)
+            images = [next(turn)]
+            file.write_text(json.dumps(changed))
+            np.testing.assert_array_equal(list(renderer.turntable(3, flight=file)), list(renderer.turntable(3, flight=changed)))
+            images.append(next(turn))
+            file.unlink()
+            images.append(next(turn))
+            np.testing.assert_array_equal(images, expected)
+            with self.assertRaisesRegex(freevoxels.InputError, "flight.json"):
+                renderer.turntable(3, flight=file)
+
     def test_distance_is_the_same_for_all_frames(self):
         renderer = freevoxels.Renderer(freevoxels.Volume(LONG), size=(64, 48))
         distances = []

@@ -218,6 +218,8 @@ class FREEVOXELS_API Renderer {
   Image render(std::string_view scene = "{}", const FrameOptions& options = {});
   /// Draws frame `frame` of a full turn of `frames`, with the cameras and the light of `freevoxels turntable`: the eye is as far away in
   /// all of them as the farthest needs. With the key "flight" it is frame `frame` of a flight through key frames of camera and lights.
+  /// The flight's file is read for the first frame that is drawn of it, and again where that frame is drawn again, or a frame of another
+  /// scene or number of frames was drawn in between by this function.
   Image renderTurn(int frame, int frames, std::string_view scene = "{}", const FrameOptions& options = {});
   /// Begins the same frame as render() and returns at once. Frames of a renderer are drawn in the order in which they were submitted.
   /// Throws for errors of `scene`; Frame::wait() throws those of drawing.
