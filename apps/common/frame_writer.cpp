@@ -8,13 +8,14 @@ namespace freevoxels {
 
 void FrameWriter::write(Image image, const Scene& view, const FrameJob& job) {
   progress_.begin("writing " + job.files.front());
-  finish();
-  writer_.start([scene = options_.scene.description.of(job.input), files = job.files, image = std::move(image), view,
-                 options = describe(view, job), facts = facts()] { writeImages(image, scene, files, view, "render", options, facts); });
-  written_ = &job;
+  if (usesStandardOutput(job.files)) finish();
+  const SceneDescription scene = options_.scene.description.of(job.input);
+  writer_.start(imageWriting(std::move(image), scene, job.files, view, "render", describe(view, job), facts()),
+                [this, &job] { printNames(job); });
 }
 
 void FrameWriter::writeSums(const FixedSums& sums, const Scene& view, const FrameJob& job) {
+  finish();
   const DeferredInterrupts wholeFile;
   freevoxels::writeSums(job.files.front(), sums, imageHeader(options_.scene.description, view, "render", describe(view, job), facts()));
   printNames(job);
@@ -22,7 +23,6 @@ void FrameWriter::writeSums(const FixedSums& sums, const Scene& view, const Fram
 
 void FrameWriter::finish() {
   writer_.finish();
-  if (const FrameJob* const written = std::exchange(written_, nullptr)) printNames(*written);
 }
 
 void FrameWriter::printNames(const FrameJob& job) {

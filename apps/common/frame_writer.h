@@ -19,12 +19,13 @@ class FrameWriter {
   FrameWriter(const RenderOptions& options, const RunReport& report, SeriesProgress& progress)
       : options_(options), report_(report), progress_(progress) {}
 
-  /// Waits for the frame before, then begins to write, which goes on while the next frame is drawn. `job` must remain until finish().
-  /// Throws what writing the frame before threw.
+  /// Begins to write, beside the frames before, which goes on while the next frames are drawn. Waits while too many are being written, and
+  /// for an image to be on standard output before the next one. `job` must remain until finish(). Prints the names of files in the order of
+  /// frames. Throws what writing a frame before threw.
   void write(Image image, const Scene& view, const FrameJob& job);
   /// Writes the sums of shares, and waits.
   void writeSums(const FixedSums& sums, const Scene& view, const FrameJob& job);
-  /// Waits until the last frame is written, and prints the names of its files.
+  /// Waits until all frames are written, and prints the names of their files.
   void finish();
   /// Prints the names of a frame's files, where this process prints.
   void printNames(const FrameJob& job);
@@ -38,7 +39,6 @@ class FrameWriter {
   const RunReport& report_;
   SeriesProgress& progress_;
   BackgroundWriter writer_;
-  const FrameJob* written_ = nullptr;  ///< that `writer_` is writing
 };
 
 }  // namespace freevoxels

@@ -9,7 +9,9 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <atomic>
 #include <cctype>
+#include <condition_variable>
 #include <csignal>
 #include <cstdio>
 #include <iostream>
@@ -172,7 +174,8 @@ Outcome parseAndRun(CLI::App& app, Arguments words) {
   }
 }
 
-volatile std::sig_atomic_t deferredSignal = 0;
+std::atomic<int> deferredSignal = 0;
+static_assert(decltype(deferredSignal)::is_always_lock_free);  // for the handler
 
 extern "C" void deferSignal(int signal) {
   deferredSignal = signal;
@@ -183,9 +186,12 @@ constexpr std::array kDeferred{SIGINT, SIGTERM, SIGHUP};
 /// The first instance installs the handlers, the last one restores the previous ones.
 struct Deferring {
   std::mutex mutex;
+  std::condition_variable ended;  ///< notified when `count` becomes 0
   int count = 0;
   std::array<struct sigaction, kDeferred.size()> before;
 } deferring;
+
+thread_local int countOfThread = 0;
 
 }  // namespace
 
@@ -227,7 +233,8 @@ void MessageOptions::apply() const {
 }
 
 DeferredInterrupts::DeferredInterrupts() {
-  const std::lock_guard lock(deferring.mutex);
+  std::unique_lock lock(deferring.mutex);
+  if (countOfThread++ == 0) deferring.ended.wait(lock, [] { return deferring.count == 0 || deferredSignal == 0; });
   if (deferring.count++ > 0) return;
   struct sigaction defer {};
   defer.sa_handler = deferSignal;
@@ -236,15 +243,13 @@ DeferredInterrupts::DeferredInterrupts() {
 }
 
 DeferredInterrupts::~DeferredInterrupts() {
-  int signal = 0;
-  {
-    const std::lock_guard lock(deferring.mutex);
-    if (--deferring.count > 0) return;
-    for (std::size_t i = 0; i < kDeferred.size(); ++i) sigaction(kDeferred[i], &deferring.before[i], nullptr);
-    signal = deferredSignal;
-    deferredSignal = 0;
-  }
-  if (signal != 0) std::raise(signal);
+  const std::lock_guard lock(deferring.mutex);
+  --countOfThread;
+  if (--deferring.count > 0) return;
+  for (std::size_t i = 0; i < kDeferred.size(); ++i) sigaction(kDeferred[i], &deferring.before[i], nullptr);
+  // Locked, so that no thread that waits can defer the signal again.
+  if (const int signal = deferredSignal.exchange(0); signal != 0) std::raise(signal);
+  deferring.ended.notify_all();
 }
 
 void checkDistinct(const std::vector<std::string>& files) {

@@ -33,7 +33,7 @@ struct MessageOptions {
 
 /// As long as one exists, SIGINT, SIGTERM and SIGHUP are deferred, so that an output that is being written is
 /// completed instead of left as a temporary file. The deferred signal then ends the program. Any thread may
-/// have one.
+/// have one, which ends in the same thread. Once a signal is deferred, no other thread's begins: its constructor waits for all to end.
 class DeferredInterrupts {
  public:
   DeferredInterrupts();

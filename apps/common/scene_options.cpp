@@ -246,11 +246,20 @@ ExrOptions imageHeader(const SceneDescription& description, const Scene& scene, 
   return exr;
 }
 
-void writeImages(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
-                 const std::string& command, const OptionList& options, std::map<std::string, std::string> facts) {
+WritingTask imageWriting(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
+                         const std::string& command, const OptionList& options, std::map<std::string, std::string> facts) {
   addChannels(image, description.output.aovs, scene.camera);
   annotate(image, description, scene);
-  writeImages(image, description.output, files, imageHeader(description, scene, command, options, std::move(facts)));
+  return {.bytes = bytesOf(image),
+          .write = [image = std::move(image), output = description.output, names = std::vector<std::string>(files.begin(), files.end()),
+                    header = imageHeader(description, scene, command, options, std::move(facts))] {
+            writeImages(image, output, names, header);
+          }};
+}
+
+void writeImages(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
+                 const std::string& command, const OptionList& options, std::map<std::string, std::string> facts) {
+  imageWriting(std::move(image), description, files, scene, command, options, std::move(facts)).write();
 }
 
 }  // namespace freevoxels

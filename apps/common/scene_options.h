@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "apps/common/background_writer.h"
 #include "apps/common/option_values.h"
 #include "apps/common/output_options.h"
 #include "engine/description/scene_fields.h"
@@ -75,7 +76,10 @@ void logRemarks(const SceneDescription& description, const Scene& scene);
 /// The header of an .exr. `command` and `facts` as for exrMetadata, which the volume's source joins.
 ExrOptions imageHeader(const SceneDescription& description, const Scene& scene, const std::string& command, const OptionList& options,
                        std::map<std::string, std::string> facts);
-/// Writes a whole image of the scene, with such a header.
+/// What writes a whole image of the scene, with such a header. It keeps nothing of the scene.
+WritingTask imageWriting(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
+                         const std::string& command, const OptionList& options, std::map<std::string, std::string> facts);
+/// Writes such an image.
 void writeImages(Image image, const SceneDescription& description, std::span<const std::string> files, const Scene& scene,
                  const std::string& command, const OptionList& options, std::map<std::string, std::string> facts);
 

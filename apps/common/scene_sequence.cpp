@@ -202,9 +202,9 @@ std::vector<std::string> SceneSequence::save(std::span<const std::string> patter
       Image image = render(frame, *options, scene.output.aovs, progress ? own : Progress());
       if (const std::string cleared = clearPixelsThatAreNoNumbers(image); !cleared.empty())
         report_(fmt::format("{}: {}", files[frame].front(), cleared), true);
-      writer.start([image = std::move(image), &output = scene.output, &own = files[frame]] {
-        writeImages(image, output, own, {.fullFloat = output.fullFloat});
-      });
+      writer.start({.bytes = bytesOf(image), .write = [image = std::move(image), &output = scene.output, &own = files[frame]] {
+                      writeImages(image, output, own, {.fullFloat = output.fullFloat});
+                    }});
       written.insert(written.end(), files[frame].begin(), files[frame].end());
     } catch (const Error& error) {
       if (!film_.isFilm() || error.kind() != ErrorKind::Input || !isViewChosen_) throw;

@@ -133,15 +133,24 @@ std::string commandOf(const DrawnImage& drawn, const MovedFrames& moved) {
   return commandInto("turntable", optionsOf(scene.resolvedTurn(drawn.scene, moved.frames)), moved.pattern);
 }
 
-void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file) {
+namespace {
+
+/// What writes an image of this device, with all that `freevoxels render` would write. It keeps nothing of the device and the scene.
+WritingTask writingOf(const Device& device, const DrawnImage& drawn, const std::string& file) {
   const std::span<const std::string> files(&file, 1);
   const SceneDescription scene = sceneInto(drawn, files);
   checkScene(scene, files);
   if (scene.output.aovs.hasLayers())
     fail(ErrorKind::Usage,
          "the image of a window has no layers, which are drawn one by one: copy the command that renders it, and run that");
-  writeImages(downloadImage(device, *drawn.image), scene, files, drawn.scene, "render", optionsOf(scene.resolved(drawn.scene)),
-              {{"device", drawn.device.name}, {"driver", drawn.device.driver}});
+  return imageWriting(downloadImage(device, *drawn.image), scene, files, drawn.scene, "render", optionsOf(scene.resolved(drawn.scene)),
+                      {{"device", drawn.device.name}, {"driver", drawn.device.driver}});
+}
+
+}  // namespace
+
+void saveImage(const Device& device, const DrawnImage& drawn, const std::string& file) {
+  writingOf(device, drawn, file).write();
 }
 
 void saveImageOfSize(const Device& device, const DrawnImage& drawn, glm::ivec2 size, const std::string& file, const Progress& progress) {
@@ -188,7 +197,7 @@ void saveScene(const DrawnImage& drawn, const std::string& file) {
 
 namespace {
 
-/// Draws an image for each file, for which `set` changes the request, and writes it while the next one is drawn.
+/// Draws an image for each file, for which `set` changes the request, and writes it while the next ones are drawn.
 void saveFrames(const Device& device, ImageMaker& maker, ImageRequest request, std::span<const std::string> files,
                 const std::function<void(ImageRequest&, std::size_t)>& set, const Progress& progress) {
   const auto count = double(files.size());
@@ -198,7 +207,7 @@ void saveFrames(const Device& device, ImageMaker& maker, ImageRequest request, s
       progress(fmt::format("frame {} of {}: {}", frame + 1, files.size(), stage), (double(frame) + fraction) / count);
     };
     set(request, frame);
-    writer.start([&device, drawn = maker.make(request, ofFrame), &file = files[frame]] { saveImage(device, drawn, file); });
+    writer.start(writingOf(device, maker.make(request, ofFrame), files[frame]));
   }
   writer.finish();
 }

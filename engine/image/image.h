@@ -26,6 +26,13 @@ struct Image {
   glm::ivec2 wholeSize{0}, offset{0};
 };
 
+/// The memory of all its values.
+inline std::uint64_t bytesOf(const Image& image) {
+  std::uint64_t values = 4 * image.pixels.size() + image.depth.size();
+  for (const auto& [name, channel] : image.channels) values += channel.size();
+  return values * sizeof(float);
+}
+
 /// Pixels of an image.
 struct PixelRectangle {
   glm::ivec2 corner{0};  ///< top left
