@@ -48,7 +48,7 @@ ivec2 slicesOnRay(LevelGeometry level, Ray ray, ivec2 slices) {
       range.x = max(range.x, ray.eye - ray.reach - 1.0);
   }
   // Clamped before the conversion to int, whose range rays nearly parallel to a side exceed.
-  range = clamp(range, vec2(slices) - vec2(1.0), vec2(slices) + vec2(1.0));
+  range = clamp(range, vec2(slices.x - 1), vec2(slices.y + 1));
   return ivec2(max(int(floor(range.x)), slices.x), min(int(ceil(range.y)), slices.y - 1));
 }
 
