@@ -106,6 +106,7 @@ void CubeDrawing::State::begin(const Camera& camera, const FrameSettings& wanted
 
 std::optional<std::string> CubeDrawing::whyNot(const FrameSettings& settings) {
   if (!settings.gathers()) return "splats are drawn of the whole volume";
+  if (settings.clip) return "rays are clipped in the whole volume";
   if (!settings.lighting) return {};
   if (lightAttenuationFor(settings) == LightAttenuation::Table) return "shadows from the table need the whole volume";
   return {};

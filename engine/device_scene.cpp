@@ -93,25 +93,35 @@ const AttenuationTable& DeviceScene::table(bool withLevels, const Progress& prog
   return *table_;
 }
 
+/// Solves for the scattered light, unless that is there or may be old.
+void DeviceScene::solveScattering(const FrameSettings& settings, const Progress& progress) {
+  if (!settings.clip) clippedScattering_.reset();
+  if (scatteringIsOld_ && settings.allowsOldLight) return;
+  std::optional<ScatteringSolver> other;  // the old light stays until this is complete, for a draft that follows if it is given up
+  if (!scattering_ || scatteringIsOld_) {
+    const StageTimer timer(frameTimes, "scattering medium");
+    other.emplace(device, ScatteringMedium(hostVolume, classification));
+  }
+  ScatteringSolver& solver = other ? *other : *scattering_;
+  if (!settings.clip) solver.solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
+  if (other) {
+    scattering_.reset();
+    scattering_.emplace(*std::move(other));
+  }
+  scatteringIsOld_ = false;
+  if (!settings.clip) return;
+  ScatteringSolver clipped = scattering_->clipped(*settings.clip, settings.scatteringCoarseness);
+  clipped.solve(*settings.lighting, 0, frameTimes, progress);
+  clippedScattering_.reset();
+  clippedScattering_.emplace(std::move(clipped));
+}
+
 void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress) {
   // First, as a solution takes memory while it is computed.
   scatters_ = hasScatteredLight(*settings.lighting, built.volume.hasEmission());
-  if (scatters_ && !(scatteringIsOld_ && settings.allowsOldLight)) {
-    std::optional<ScatteringSolver> other;  // the old light stays until this is complete, for a draft that follows if it is given up
-    if (!scattering_ || scatteringIsOld_) {
-      const StageTimer timer(frameTimes, "scattering medium");
-      other.emplace(device, ScatteringMedium(hostVolume, classification));
-    }
-    ScatteringSolver& solver = other ? *other : *scattering_;
-    solver.solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
-    if (other) {
-      scattering_.reset();
-      scattering_.emplace(*std::move(other));
-    }
-    scatteringIsOld_ = false;
-  }
+  if (scatters_) solveScattering(settings, progress);
   prepareOwnLights(settings, scalars, constants, progress);
-  if (scatters_) setScattered(constants, *settings.lighting, *scattering_);
+  if (scatters_) setScattered(constants, *settings.lighting, *scattered());
 }
 
 void DeviceScene::prepareOwnLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress) {

@@ -59,7 +59,7 @@ class DeviceScene {
   /// The lights of the last lit frame; only valid after prepareLights() or prepareOwnLights().
   const LightPass& lights() const { return *lights_; }
   /// Its scattered light; null if the last lit frame had none.
-  const ScatteringSolver* scattered() const { return scatters_ ? &*scattering_ : nullptr; }
+  const ScatteringSolver* scattered() const { return !scatters_ ? nullptr : clippedScattering_ ? &*clippedScattering_ : &*scattering_; }
   /// Submits the commands, waits for them and adds their times to those of the frame.
   void submit(Commands& commands, const Progress& progress = {});
 
@@ -69,7 +69,10 @@ class DeviceScene {
   std::optional<AttenuationTable> table_;
   std::vector<double> largestDepths_;
   std::optional<LightPass> lights_;
+  void solveScattering(const FrameSettings& settings, const Progress& progress);
+
   std::optional<ScatteringSolver> scattering_;
+  std::optional<ScatteringSolver> clippedScattering_;  ///< in its place where the last frame was that of a part of the volume
   int codesVersion_ = 0;
   bool scatteringIsOld_ = false;  ///< whether it was solved for another classification
   bool scatters_ = false;  ///< whether the last frame that was lit has scattered light

@@ -34,11 +34,10 @@ void GatherDrawing::followScene(const GatherVolume::Shading& shading) {
   }
 }
 
-void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress) {
+void GatherDrawing::prepareVolume(const GatherVolume::Shading& shading, const shader::GatherFrame& lattice, const Progress& progress) {
   try {
     followScene(shading);
-    GatherPass::compileAhead(scene_.device, *volume_, shading.axes, shading.frame.detail.coarsest > 0, settings.holdout != nullptr,
-                             settings.isProjected());
+    GatherPass::compileAhead(scene_.device, *volume_, shading.axes, GatherPass::Rays(lattice));
   } catch (...) {
     volume_.reset();
     throw;
@@ -85,7 +84,7 @@ GatherDrawing::Frame GatherDrawing::prepare(const Camera& camera, const FrameSet
                  .scattered = lighting != nullptr ? scene_.scattered() : nullptr,
                  .axes = {someRayHasAxis(frame.lattice, 0), someRayHasAxis(frame.lattice, 1), someRayHasAxis(frame.lattice, 2)},
                  .keptQuadBytes = planKeptQuadBytes(scene_.device)},
-                settings, progress);
+                frame.lattice, progress);
   if (!pass_) pass_.emplace(scene_.device);
   frame.lattice.holdout = pass_->holdOut(settings.holdout);
   volume_->describe(frame.lattice);

@@ -42,7 +42,7 @@ class GatherDrawing {
 
  private:
   void followScene(const GatherVolume::Shading& shading);
-  void prepareVolume(const GatherVolume::Shading& shading, const FrameSettings& settings, const Progress& progress);
+  void prepareVolume(const GatherVolume::Shading& shading, const shader::GatherFrame& lattice, const Progress& progress);
 
   DeviceScene& scene_;
   std::optional<GatherVolume> volume_;

@@ -161,6 +161,7 @@ void Renderer::check(const Camera& camera, const FrameSettings& settings) const 
     if (!settings.gathers()) failHoldoutOfSplats();
     checkHoldoutSize(*settings.holdout, settings.size);
   }
+  FV_CHECK_EQ(settings.clip && (!settings.gathers() || merged_), false);
   if (!settings.isProjected()) return;
   FV_CHECK_EQ(settings.lod, 0.0f);
   if (merged_)

@@ -32,9 +32,26 @@ vec2 clipped(vec2 range, float origin, float slope, float low, float high) {
   return vec2(max(range.x, min(a, b)), min(range.y, max(a, b)));
 }
 
+// The slices of the level between which a ray is in the part of the volume that is drawn, with kClips.
+vec2 drawnRange(Ray ray) {
+  const vec3 low = (frame.clipLow + 0.5) / ray.edge - 0.5, high = (frame.clipHigh + 0.5) / ray.edge - 0.5;
+  vec2 range = vec2(low[kAxis], high[kAxis]);
+  range = clipped(range, ray.origin.x, ray.slope.x, low[kSideA], high[kSideA]);
+  range = clipped(range, ray.origin.y, ray.slope.y, low[kSideB], high[kSideB]);
+  const float first = dot(frame.clipNormal, voxelPosition(ray, 0.0));
+  const float change = dot(frame.clipNormal, voxelPosition(ray, 1.0)) - first;
+  return clipped(range, first, change, -1e9, frame.clipDistance);
+}
+
 // The slices `slices.x` to `slices.y` - 1 that the ray meets inside the volume, in front of the eye and of the ray's end.
 ivec2 slicesOnRay(LevelGeometry level, Ray ray, ivec2 slices) {
   vec2 range = vec2(slices) - vec2(0.0, 1.0);
+  if (kClips) {
+    const vec2 drawn = drawnRange(ray);
+    if (drawn.x >= drawn.y) return ivec2(0, -1);
+    // The stretch that begins at the last slice reaches half a slice further on average.
+    range = ray.direction > 0.0 ? vec2(range.x, min(range.y, floor(drawn.y))) : vec2(max(range.x, ceil(drawn.x)), range.y);
+  }
   [[unroll]] for (int side = 0; side < 2; ++side)
     range = clipped(range, ray.origin[side], ray.slope[side], -1.0, float(level.dimensions[side]));
   if (ray.direction > 0.0)
@@ -221,9 +238,18 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   ray.edge = edge;
   ray.perSlice = edge / abs(sampleRay.along);
   ray.reach = kHoldout ? min(sampleRay.end / ray.perSlice, 1e9) : 0.0;
+  float ahead = 0.0;  // slices from the eye to where the ray begins
+  if (kClips) {
+    const vec2 drawn = drawnRange(ray);
+    ahead = max(ray.direction * ((ray.direction > 0.0 ? drawn.x : drawn.y) - ray.eye), 0.0);
+    ray.eye += ray.direction * ahead;
+    if (kHoldout) ray.reach -= ahead;
+  }
   const ivec2 slices = slicesOnRay(level, ray, frame.axes[kAxis].slices[sampleRay.along > 0.0 ? 1 : 0][levelIndex]);
   sums.distance = 0.0;
+  const float before = sums.transmittance;
   if (sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, scalars);
+  if (kClips) sums.distance += ahead * (before - sums.transmittance);
   distanceSum += ray.perSlice * sums.distance;
 }
 

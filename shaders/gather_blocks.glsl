@@ -58,6 +58,7 @@ SliceValues blockValuesAt(LevelGeometry level, Ray ray, int slice, bool within) 
   found.medium = within ? mediumAt(quad, weights, extinctionsOf(quad), ray.toEye) : vec4(0.0);
   found.depths = depthsTowardsLights(quad, weights);
   continueDepths(found.depths, level, position);
+  if (kClips) passClipped(found.depths, level, voxelPosition(ray, float(slice)), ray.edge, 0.0);
   found.emission = kEmits && within ? sumOf(extraQuad(quad), weights) : vec3(0.0);
   found.coverage = found.medium.a > 0.0 || (kEmits && found.emission != vec3(0.0)) ? 1.0 : 0.0;
   found.hasLight = true;

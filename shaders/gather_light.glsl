@@ -121,6 +121,65 @@ vec4 depthsTowardsLights(int quad, vec4 weights) {
   return depths;
 }
 
+// The way from a position in index space to a light: a vector of a voxel along its longest component, and how often the light is so far away.
+vec4 layerTowards(int light, vec3 position) {
+  if (frame.lights[light].atInfinity != 0) return vec4(frame.lights[light].across, 1e9);
+  const vec3 toLight = frame.lights[light].positionOrDirection - position;
+  const float layers = max(max(abs(toLight.x), max(abs(toLight.y), abs(toLight.z))), 1e-6);
+  return vec4(toLight / layers, layers);
+}
+
+// After how many layers the way from a position leaves the part of the volume that is drawn, with kClips; 0 or less where it is not in there.
+float layersToClip(vec3 position, vec3 layer) {
+  float layers = 1e9;
+  [[unroll]] for (int axis = 0; axis < 3; ++axis)
+    if (abs(layer[axis]) > 1e-6) layers = min(layers, ((layer[axis] > 0.0 ? frame.clipHigh[axis] : frame.clipLow[axis]) - position[axis]) / layer[axis]);
+  const float change = dot(frame.clipNormal, layer);
+  if (change > 1e-6) layers = min(layers, (frame.clipDistance - dot(frame.clipNormal, position)) / change);
+  return layers;
+}
+
+const float kClipStep = 8.0;  // layers: an edge of a brick of the finest level
+const int kClipSteps = 32;
+
+// With kClips: takes from the depths towards the lights at a position what is clipped, which is the depth where the way to the light leaves
+// the part that is drawn. Bricks without voxels have no depths; as nothing is in the way in them, the depth is that of the first brick on
+// the way back to the position. `stored` is the number of layers towards the light of which a voxel's depth is.
+void passClipped(inout vec4 depths, LevelGeometry level, vec3 position, float edge, float stored) {
+  [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
+    if (i >= kLights) continue;
+    const vec4 way = layerTowards(i, position);
+    const float layers = layersToClip(position, way.xyz);
+    if (layers >= way.w) continue;
+    vec3 there = position + way.xyz * (layers - stored * edge);
+    const vec3 dimensions = edge * vec3(kAxis == 0 ? level.count : level.dimensions.x,
+                                        kAxis == 1 ? level.count : kAxis == 0 ? level.dimensions.x : level.dimensions.y,
+                                        kAxis == 2 ? level.count : level.dimensions.y);
+    if (any(lessThan(there, vec3(-0.5))) || any(greaterThan(there, dimensions - 0.5))) continue;
+    const int steps = clamp(int(ceil(layers / (kClipStep * edge))), 0, kClipSteps);
+    float clippedDepth = layers > 0.0 ? 0.0 : depths[i];
+    bool found = false;
+    int step = 0;
+    do {
+      if (step < steps) {
+        const vec3 block = (there + 0.5) / edge - 0.5;
+        const int slice = clamp(int(floor(block[kAxis] + 0.5)), 0, level.count - 1);
+        vec4 weights;
+        const int quad = quadAt(level, vec2(block[kSideA], block[kSideB]), slice, weights);
+        if (quad >> (3 * kBrickLevels) != 0) {
+          clippedDepth = lightDepth(i, quad, weights);
+          step = steps;
+          found = true;
+        }
+        there -= kClipStep * edge * way.xyz;
+        ++step;
+      }
+    } while (step < steps);
+    if (!found) clippedDepth = depths[i];
+    depths[i] = max(depths[i] - clippedDepth, 0.0);
+  }
+}
+
 // Beyond the volume extinction falls to 0 within a block. So does the depth towards a light on that side, as the weights do; behind the
 // volume it stays as it is at the border.
 void continueDepths(inout vec4 depths, LevelGeometry level, vec2 position) {

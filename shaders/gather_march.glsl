@@ -24,6 +24,8 @@ layout(constant_id = 8) const bool kTinted = false;   // whether the extinction 
 layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are lit at samples emit light, too
 layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
 layout(constant_id = 11) const bool kHoldout = false;  // whether rays end at the depths of a holdout
+layout(constant_id = 14) const bool kClips = false;    // whether rays are marched in a part of the volume alone (GatherFrame::clips)
+layout(constant_id = 15) const bool kQuarters = false;  // whether scalars are classified at the quarters of a stretch, too (GatherFrame::quarters)
 
 // Loops that lanes leave at different times have the form `do { if (goOn) ... } while (goOn)`, where `goOn` compares integers: lavapipe
 // executes the body of any other loop once more with lanes masked, and computes values that are assigned outside of the `if` anew for lanes
@@ -200,6 +202,7 @@ bool isOwn(LevelGeometry level, vec2 position, int slice) {
   return all(greaterThanEqual(block, level.begin)) && all(lessThan(block, level.end));
 }
 
+// The position in index space of a ray on a slice.
 vec3 voxelPosition(Ray ray, float slice) {
   const vec2 sides = ray.origin + ray.slope * slice;
   vec3 position;

@@ -62,11 +62,7 @@ vec2 scalarNear(LevelGeometry level, vec3 position) {
 void addLayerTowards(inout vec4 depths, LevelGeometry level, SliceValues at, vec3 position, bool shows) {
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
-    vec3 toLight = frame.lights[i].across;
-    if (frame.lights[i].atInfinity == 0) {
-      toLight = frame.lights[i].positionOrDirection - position;
-      toLight /= max(max(abs(toLight.x), max(abs(toLight.y), abs(toLight.z))), 1e-6);
-    }
+    const vec3 toLight = layerTowards(i, position).xyz;
     const float layer = length(frame.indexToWorld * toLight) * frame.extinctionUnit;
     if (!shows) {
       depths[i] += layer * at.coverage * at.medium.a;
@@ -97,7 +93,9 @@ void findLight(inout SliceValues last, inout SliceValues found, LevelGeometry le
     continueDepths(depths, level, position);
     SliceValues at = found;
     if (first) at = last;
-    addLayerTowards(depths, level, at, voxelPosition(ray, float(there)), shows);
+    const vec3 place = voxelPosition(ray, float(there));
+    addLayerTowards(depths, level, at, place, shows);
+    if (kClips) passClipped(depths, level, place, ray.edge, 1.0);
     at.depths = depths;
     if (first) last = at; else found = at;
     again = kPieces ? !begun : first;
@@ -163,8 +161,29 @@ void lightStretch(out SegmentLight nearLit, out SegmentLight farLit, inout Slice
   }
 }
 
+// A scalar and what the transfer function makes of it.
+struct ClassifiedScalar {
+  float scalar;
+  vec4 integral, medium;
+};
+
+// The mean of extinction times colour and extinction between two scalars of a stretch, with kQuarters by another one between them, which is
+// `fraction` of the stretch from its first slice.
+vec4 meanOfScalars(LevelGeometry level, Ray ray, int before, int slice, bool within, float fraction, ClassifiedScalar from, ClassifiedScalar to) {
+  const vec4 mean = meanBetween(from.scalar, from.integral, from.medium, to.scalar, to.integral, to.medium);
+  if (!kQuarters) return mean;
+  const vec2 position = ray.origin + ray.slope * mix(float(before), float(slice), fraction);
+  const vec2 quarter = scalarBetween(level, position, before, within ? slice : -1, fraction);
+  vec4 integral, medium;
+  tableAt(quarter.x, integral, medium);
+  const vec4 means = meanBetween(from.scalar, from.integral, from.medium, quarter.x, integral, medium) +
+                     meanBetween(quarter.x, integral, medium, to.scalar, to.integral, to.medium);
+  return quarter.y > 0.0 ? mix(mean, 0.5 * means, frame.quarters) : mean;
+}
+
 // The stretch from the previous slice to this one. Scalars change linearly from a slice to the middle of the stretch and on to the next
 // slice, so that integrals of the transfer function give the means. In the middle the scalar is interpolated between all eight voxels around.
+// Where stretches are long, so it is at their quarters.
 // A slice that is not `within` the level's slices has no data.
 Stretch scalarStretch(SliceValues last, LevelGeometry level, Ray ray, int slice, bool within) {
   Stretch stretch;
@@ -179,17 +198,18 @@ Stretch scalarStretch(SliceValues last, LevelGeometry level, Ray ray, int slice,
   float scalar = middle.y > 0.0 ? middle.x : first.scalar;
   if (kHoldout) {  // the ends of what is in front of the ray's end
     const float seen = ray.reach - ((float(slice) - ray.eye) * ray.direction - 1.0);
-    const float between = scalar;
-    scalar = mix(first.scalar, between, clamp(2.0 * seen, 0.0, 1.0));
+    const float middleScalar = scalar;
+    scalar = mix(first.scalar, middleScalar, clamp(2.0 * seen, 0.0, 1.0));
     if (seen < 1.0) {
-      second.scalar = mix(between, second.scalar, clamp(2.0 * seen - 1.0, 0.0, 1.0));
+      second.scalar = mix(middleScalar, second.scalar, clamp(2.0 * seen - 1.0, 0.0, 1.0));
       tableAt(second.scalar, second.integral, second.medium);
     }
   }
   vec4 integral, medium;
   tableAt(scalar, integral, medium);
-  stretch.near = meanBetween(first.scalar, first.integral, first.medium, scalar, integral, medium);
-  stretch.far = meanBetween(scalar, integral, medium, second.scalar, second.integral, second.medium);
+  const ClassifiedScalar between = ClassifiedScalar(scalar, integral, medium);
+  stretch.near = meanOfScalars(level, ray, before, slice, within, 0.25, ClassifiedScalar(first.scalar, first.integral, first.medium), between);
+  stretch.far = meanOfScalars(level, ray, before, slice, within, 0.75, between, ClassifiedScalar(second.scalar, second.integral, second.medium));
   stretch.coverage = middle.y;
   stretch.adds = last.coverage + middle.y + found.coverage > 0.0 && stretch.near.a + stretch.far.a > 0.0;
   if (kCube) stretch.adds = stretch.adds && isOwn(level, ray.origin + ray.slope * float(there), there);

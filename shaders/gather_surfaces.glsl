@@ -74,7 +74,9 @@ Outside outsideOf(LevelGeometry level, Ray ray, float slice, vec3 outwards) {
   const vec2 position = ray.origin + ray.slope * slice + vec2(offset[kSideA], offset[kSideB]);
   vec4 weights;
   const int quad = quadAt(level, position, clamp(int(floor(slice + offset[kAxis] + 0.5)), 0, level.count - 1), weights);
-  return Outside(depthsTowardsLights(quad, weights), ray.edge * offset);
+  vec4 depths = depthsTowardsLights(quad, weights);
+  if (kClips) passClipped(depths, level, voxelPosition(ray, slice) + ray.edge * offset, ray.edge, kScalars ? 1.0 : 0.0);
+  return Outside(depths, ray.edge * offset);
 }
 
 void lightFrom(inout SegmentLight lit, Outside outside) {

@@ -213,6 +213,21 @@ Volume InputDescription::clip(Volume whole) const {
   return whole;
 }
 
+RayClip InputDescription::rayClip(const Volume& whole) const {
+  RayClip clip{.low = glm::dvec3(-0.5), .high = glm::dvec3(whole.dimensions) - 0.5};
+  if (clipBox && !whole.isPart) {
+    clip.low = glm::max(clip.low, glm::dvec3(clipBox->first) - 0.5);
+    clip.high = glm::min(clip.high, glm::dvec3(clipBox->last) + 0.5);
+  }
+  if (clipPlane) {
+    const glm::dvec3 normal = glm::transpose(glm::dmat3(whole.indexToWorld)) * glm::normalize(clipPlane->normal);
+    const double length = glm::length(normal);
+    clip.normal = normal / length;
+    clip.distance = glm::dot(glm::normalize(clipPlane->normal), clipPlane->point - glm::dvec3(whole.indexToWorld[3])) / length;
+  }
+  return clip;
+}
+
 std::vector<std::string> warningsOf(const Volume& volume, bool scalarsAreDensities) {
   std::vector<std::string> warnings = volume.warnings;
   const auto warn = [&](std::uint64_t voxels, const char* what) {

@@ -78,6 +78,8 @@ struct InputDescription {
   /// The part of a volume in the clip box and behind the clip plane. Fails if there is none.
   Volume clip(Volume whole) const;
   bool isClipped() const { return clipBox || clipPlane; }
+  /// The part of the whole volume where rays are marched in place of that.
+  RayClip rayClip(const Volume& whole) const;
   /// Reads or makes the volume. A procedural volume has its temperatures if any are requested; a baked one always has its
   /// temperatures and albedos. If a baked volume is too large at `level` of its octree, the finest level that fits is
   /// opened, with a warning. `what`: more grids, labels and channels; the rest of it is that of the input. `progress` may abandon it.

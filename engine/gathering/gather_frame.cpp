@@ -182,6 +182,12 @@ void extend(glm::ivec2& first, glm::ivec2& extent, glm::ivec2 otherFirst, glm::i
 
 }  // namespace
 
+double quartersOf(glm::dvec3 direction) {
+  constexpr double kLong = 1.45, kLongest = 1.6;  // voxels
+  const double length = glm::length(direction) / std::abs(direction[majorAxis(direction)]);
+  return std::clamp((length - kLong) / (kLongest - kLong), 0.0, 1.0);
+}
+
 /// Tests a grid of rays, with a margin for the rays in between.
 bool someRayHasAxis(const shader::GatherFrame& frame, int axis) {
   if (axis == frame.mainAxis) return true;
@@ -302,6 +308,14 @@ shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& ca
                             .mainAxis = majorAxis(rays.direction),
                             .projection = int(settings.gather().projection),
                             .raysOfPixel = raysOfPixel};
+  if (raysOfPixel == 0) frame.quarters = float(quartersOf(rays.direction));
+  if (const std::optional<RayClip>& clip = settings.clip) {
+    frame.clips = 1;
+    frame.clipLow = clip->low;
+    frame.clipHigh = clip->high;
+    frame.clipNormal = clip->normal;
+    frame.clipDistance = clip->normal == glm::dvec3(0.0) ? 1.0f : float(clip->distance);  // all positions are behind no plane
+  }
   const SeenRectangle seen = seenRectangle(rays, toPixel, dimensions, 1);
   frame.seenLow = seen[0];
   frame.seenHigh = seen[1];

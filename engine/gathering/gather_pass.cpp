@@ -57,13 +57,13 @@ const Shader& gatherShader(const GatherVolume& volume, bool isProjected, GatherP
   return *kShaders[volume.hasScalars()][volume.hasSurfaces() ? 2 : volume.isSampled() ? 1 : 0][std::size_t(variant)];
 }
 
-Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, bool levels, bool holdout, const Shader& shader,
+Pipeline makeGather(const Device& device, int axis, const GatherVolume& volume, GatherPass::Rays rays, const Shader& shader,
                     int lists = 0) {
-  return makeComputePipeline(
-      device, shader,
-      {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
-       std::uint32_t(volume.sampleLights()), volume.hasScattered(), volume.hasFlux(), volume.isTinted(), volume.hasEmissionApart(),
-       levels && volume.hasScalars(), holdout, lists > 0, std::uint32_t(std::max(lists, 1))});
+  return makeComputePipeline(device, shader,
+                             {std::uint32_t(axis), volume.hasTowards(), volume.hasColors(), volume.isLit(), volume.inPieces(),
+                              std::uint32_t(volume.sampleLights()), volume.hasScattered(), volume.hasFlux(), volume.isTinted(),
+                              volume.hasEmissionApart(), rays.levels && volume.hasScalars(), rays.holdout, lists > 0,
+                              std::uint32_t(std::max(lists, 1)), rays.clips, rays.quarters && volume.hasScalars()});
 }
 
 std::uint64_t latticeSize(const shader::GatherFrame& frame) {
@@ -79,10 +79,9 @@ GatherPass::GatherPass(const Device& device)
       noLight_(device, sizeof(glm::vec4), MemoryUse::Device, "no scattered light", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
       noLightTexels_(device, noLight_) {}
 
-void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout,
-                              bool isProjected) {
+void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Rays rays) {
   for (int axis = 0; axis < 3; ++axis)
-    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, levels, holdout, gatherShader(volume, isProjected, Variant::Whole));
+    if (axes[std::size_t(axis)]) makeGather(device, axis, volume, rays, gatherShader(volume, rays.areProjected, Variant::Whole));
 }
 
 void GatherPass::makeRoom(Sums& sums, std::uint64_t samples) {
@@ -150,8 +149,9 @@ void GatherPass::dispatch(Commands& commands, const GatherVolume& volume, const 
                           const shader::SamplesPush& samples) const {
   for (int axis = 0; axis < 3; ++axis) {
     if (!someRayHasAxis(frame, axis)) continue;
-    const Pipeline pipeline = makeGather(device_, axis, volume, frame.coarsest > 0, frame.raysOfPixel > 0,
-                                         gatherShader(volume, frame.projection != 0, target.variant), target.lists);
+    const Rays rays(frame);
+    const Pipeline pipeline =
+        makeGather(device_, axis, volume, rays, gatherShader(volume, rays.areProjected, target.variant), target.lists);
     const std::vector<Binding> bindings = gatherBindings(volume, axis, target);
     if (target.arguments != nullptr)
       commands.dispatchIndirect(pipeline, bindings, samples, *target.arguments, target.offset, target.mostGroups);

@@ -22,10 +22,20 @@ namespace freevoxels {
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
-  /// Compiles the pipelines that march rays along the given axes. The volume is prepared for the frame. `levels` says whether the frame
-  /// has levels of detail above voxels, `holdout` whether it has one, `isProjected` whether scalars are projected.
-  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, bool levels, bool holdout,
-                           bool isProjected);
+  /// What a frame's rays march besides the voxels: levels of detail above them; up to a holdout; with a projection of scalars; in a part of
+  /// the volume alone (RayClip); in quarters of the way between two slices.
+  struct Rays {
+    bool levels = false, holdout = false, areProjected = false, clips = false, quarters = false;
+
+    explicit Rays(const shader::GatherFrame& frame)
+        : levels(frame.coarsest > 0),
+          holdout(frame.raysOfPixel > 0),
+          areProjected(frame.projection != 0),
+          clips(frame.clips != 0),
+          quarters(frame.quarters > 0.0f) {}
+  };
+  /// Compiles the pipelines that march rays along the given axes. The volume is prepared for the frame.
+  static void compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Rays rays);
   /// Uploads the holdout of the next frames, unless it is null or that of the last frame. Returns its address for GatherFrame::holdout.
   glm::uvec2 holdOut(const std::shared_ptr<const Holdout>& holdout);
   /// Records all steps of a frame of one volume.

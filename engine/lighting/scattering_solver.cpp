@@ -166,6 +166,12 @@ ScatteringSolver::ScatteringSolver(const Device& device, ScatteringMedium medium
   while (media_.back().grid().count() > kFewCells) media_.push_back(media_.back().coarser());
 }
 
+ScatteringSolver ScatteringSolver::clipped(const RayClip& clip, int coarseness) const {
+  ScatteringSolver part(device_, media_[std::min(std::size_t(coarseness), media_.size() - 1)].clipped(clip));
+  part.isDraft_ = true;
+  return part;
+}
+
 std::unique_ptr<ScatteringGrid> ScatteringSolver::solveOrders(const Lighting& lighting, const Progress& progress) {
   auto grid = std::make_unique<ScatteringGrid>(device_, medium(), lighting);
   facts_.sets = grid->sweepOrders(lighting.scattering, progress);
@@ -183,7 +189,7 @@ std::unique_ptr<ScatteringGrid> ScatteringSolver::solveAllOrders(const Lighting&
     Gmres gmres(*grid, progress);
     // The norm of a vector grows with the root of the number of cells.
     const double scale = coarse ? std::sqrt(double(grid->cells()) / double(coarse->cells())) : 0.0;
-    const double tolerance = level_ > 0 ? kDraftTolerance : level > level_ ? kCoarseTolerance : kScatteringTolerance;
+    const double tolerance = isDraft_ || level_ > 0 ? kDraftTolerance : level > level_ ? kCoarseTolerance : kScatteringTolerance;
     const double first = gmres.solve(scale * reference, tolerance);
     reference = coarse ? scale * reference : first;
     facts_.sets = gmres.sets();

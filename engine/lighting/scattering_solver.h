@@ -33,6 +33,8 @@ inline constexpr double kScatteringTolerance = 3e-3;
 class ScatteringSolver {
  public:
   ScatteringSolver(const Device& device, ScatteringMedium medium);
+  /// Of a part of its medium, on cells whose edge is `coarseness` times doubled, for drafts.
+  ScatteringSolver clipped(const RayClip& clip, int coarseness) const;
 
   /// Solves for this light, on cells whose edge is `coarseness` times doubled, unless that was done by the last call; blocks. The light's
   /// attenuation does not matter. Fails with ErrorKind::OutOfMemory; after an exception nothing is solved.
@@ -66,6 +68,7 @@ class ScatteringSolver {
   std::optional<Lighting> solved_;
   std::size_t level_ = 0;  ///< number of the medium on which it was solved
   std::uint64_t version_ = 0;
+  bool isDraft_ = false;  ///< whether all solutions are those of drafts
   ScatteringFacts facts_;
   double brightest_ = 0.0;
   glm::dvec3 deltaScale_{1.0};

@@ -22,6 +22,8 @@ constexpr double kNearReference = 0.75;
 /// A ray marches along the main axis if its component along it is at least this part of its largest
 /// component.
 constexpr double kMinAlongMain = 0.5;
+/// Lengths in voxels of a stretch from slice to slice, in the middle of the image, from which on its quarters count, and count fully.
+constexpr double kLongStretch = 1.45, kLongestStretch = 1.6;
 /// The mean of a transfer function is that of both ends if they are fewer intervals apart than this.
 constexpr double kMinChange = 16.0;
 
@@ -81,6 +83,8 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
   toPixel_ = glm::inverse(rays_.orthographic ? glm::dmat3(rays_.originX, rays_.originY, middle.direction)
                                              : glm::dmat3(rays_.directionX, rays_.directionY, middle.direction));
   mainAxis_ = majorAxis(middle.direction);
+  const double stretch = glm::length(middle.direction) / std::abs(middle.direction[mainAxis_]);
+  quarters_ = std::clamp((stretch - kLongStretch) / (kLongestStretch - kLongStretch), 0.0, 1.0);
   const std::array<int, 2> sides = sidesOf(mainAxis_);
   const double voxel = std::min(glm::length(linear_[sides[0]]), glm::length(linear_[sides[1]])) /
                        glm::length(linear_ * (rays_.orthographic ? rays_.originX : rays_.directionX));  // seen from straight in front
@@ -211,25 +215,42 @@ glm::dvec4 ReferenceGather::meanBetween(double from, double to) const {
   return (integralUpTo(to) - integralUpTo(from)) / (to - from);
 }
 
+/// The scalar at a fraction of the way from a slice to the next one, `slice`, between all eight voxels around, and their share that has
+/// data.
+ReferenceGather::Scalar ReferenceGather::scalarBetween(const Ray& ray, const Slab& slab, int number, double fraction) const {
+  Scalar between;
+  const int slice = slab.slice(number);
+  for (int end = 0; end < 2; ++end) {
+    if (end == 1 && number == slab.count) continue;
+    const int there = slice - (1 - end) * slab.sign;
+    if (there < 0 || there >= volume_.dimensions[slab.axis]) continue;
+    const double share = end == 0 ? 1.0 - fraction : fraction;
+    forCorners(slab.position(ray, slice - (1.0 - fraction) * slab.sign), slab.axis, there, volume_.dimensions,
+               [&](std::size_t, double weight, glm::ivec3 voxel) {
+                 const std::optional<double> scalar = scalarOf(voxel);
+                 if (!scalar) return;
+                 between.coverage += share * weight;
+                 between.value += share * weight * *scalar;
+               });
+  }
+  if (between.coverage > 0.0) between.value /= between.coverage;
+  return between;
+}
+
 /// The stretch that ends at a slice. Beyond the level's last slice there is no data.
 ReferenceGather::ScalarStretch ReferenceGather::scalarStretch(const Ray& ray, const Slab& slab, int number, const Scalar& last) const {
   ScalarStretch stretch{.slice = slab.slice(number), .begin = last};
   if (number < slab.count) stretch.end = scalarAt(ray, slab, stretch.slice);
-  double sum = 0.0;
-  for (int end = 0; end < 2; ++end) {
-    if (end == 1 && number == slab.count) continue;
-    const int slice = stretch.slice - (1 - end) * slab.sign;
-    if (slice < 0 || slice >= volume_.dimensions[slab.axis]) continue;
-    forCorners(slab.position(ray, stretch.slice - 0.5 * slab.sign), slab.axis, slice, volume_.dimensions,
-               [&](std::size_t, double weight, glm::ivec3 voxel) {
-                 const std::optional<double> scalar = scalarOf(voxel);
-                 if (!scalar) return;
-                 stretch.middle.coverage += 0.5 * weight;
-                 sum += 0.5 * weight * *scalar;
-               });
+  stretch.middle = scalarBetween(ray, slab, number, 0.5);
+  if (stretch.middle.coverage == 0.0) stretch.middle.value = stretch.first().value;
+  const std::array<double, 3> ends{stretch.first().value, stretch.middle.value, stretch.second().value};
+  for (std::size_t half = 0; half < 2; ++half) {
+    stretch.means[half] = meanBetween(ends[half], ends[half + 1]);
+    const Scalar quarter = quarters_ > 0.0 ? scalarBetween(ray, slab, number, 0.25 + 0.5 * double(half)) : Scalar();
+    if (quarter.coverage > 0.0)
+      stretch.means[half] = glm::mix(
+          stretch.means[half], 0.5 * (meanBetween(ends[half], quarter.value) + meanBetween(quarter.value, ends[half + 1])), quarters_);
   }
-  stretch.middle.value = stretch.middle.coverage > 0.0 ? sum / stretch.middle.coverage : stretch.first().value;
-  stretch.means = {meanBetween(stretch.first().value, stretch.middle.value), meanBetween(stretch.middle.value, stretch.second().value)};
   const double ahead = slab.ahead(ray, stretch.slice);
   stretch.coverages = {glm::mix(stretch.middle.coverage, stretch.begin.coverage, std::clamp(ahead - 0.5, 0.0, 0.5)),
                        glm::mix(stretch.end.coverage, stretch.middle.coverage, std::clamp(ahead, 0.0, 0.5))};

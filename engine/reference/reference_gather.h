@@ -75,6 +75,7 @@ class ReferenceGather {
   /// The voxel's scalar in intervals of the transfer function's table; none without data.
   std::optional<double> scalarOf(glm::ivec3 voxel) const;
   Scalar scalarAt(const Ray& ray, const Slab& slab, int slice) const;
+  Scalar scalarBetween(const Ray& ray, const Slab& slab, int number, double fraction) const;
   ScalarStretch scalarStretch(const Ray& ray, const Slab& slab, int number, const Scalar& last) const;
   glm::dvec4 blockAt(const Ray& ray, const Slab& slab, int slice, const GatherBlocks& blocks) const;
   glm::dvec4 mediumAt(double scalar) const;
@@ -92,6 +93,7 @@ class ReferenceGather {
   glm::dmat3 toPixel_;  ///< index offset -> (x t, y t, t), orthographic (x, y, t), with x and y from the image's middle
   DetailRule detail_;
   int mainAxis_ = 0;
+  double quarters_ = 0.0;  ///< weight of the quarters of stretches of scalars
   GatherLattice lattice_;
   bool adapts_ = false;
   glm::dvec2 seenLow_, seenHigh_;

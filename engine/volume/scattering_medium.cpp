@@ -79,6 +79,25 @@ std::pair<glm::ivec3, glm::dmat4> cellSpaceOf(std::span<const PlacedMedium> volu
   return {glm::max(glm::ivec3(glm::ceil(extent / edge - 1e-9)), glm::ivec3(1)), toWorld};
 }
 
+template <typename Visit>
+void forEachCell(const CellGrid& grid, const Visit& visit) {
+  std::size_t i = 0;
+  glm::ivec3 cell;
+  for (cell.z = 0; cell.z < grid.cells.z; ++cell.z)
+    for (cell.y = 0; cell.y < grid.cells.y; ++cell.y)
+      for (cell.x = 0; cell.x < grid.cells.x; ++cell.x) visit(cell, i++);
+}
+
+/// The share of a cell in the box and behind the plane of `clip`: exact for a box, and for a plane across an axis.
+double shareOf(const CellGrid& grid, glm::ivec3 cell, const RayClip& clip) {
+  const double edge = grid.edge;
+  const glm::dvec3 low = glm::dvec3(cell * grid.edge) - 0.5;
+  const glm::dvec3 inBox = glm::clamp(glm::min(clip.high, low + edge) - glm::max(clip.low, low), 0.0, edge) / edge;
+  const double width = edge * (std::abs(clip.normal.x) + std::abs(clip.normal.y) + std::abs(clip.normal.z));
+  const double behind = clip.distance - glm::dot(clip.normal, low + 0.5 * edge);
+  return inBox.x * inBox.y * inBox.z * (width > 0.0 ? std::clamp(0.5 + behind / width, 0.0, 1.0) : 1.0);
+}
+
 bool isGreyColor(const glm::dvec3& color) {
   return color.r == color.g && color.g == color.b;
 }
@@ -205,6 +224,18 @@ ScatteringMedium ScatteringMedium::coarser() const {
         sum.emission += own.emission / 8.0;
         result.direct_.push_back(own.extinction);
       }
+  return result;
+}
+
+ScatteringMedium ScatteringMedium::clipped(const RayClip& clip) const {
+  ScatteringMedium result = *this;
+  forEachCell(grid_, [&](glm::ivec3 cell, std::size_t i) {
+    const double share = shareOf(grid_, cell, clip);
+    result.cells_[i].extinction *= share;
+    result.cells_[i].scattering *= share;
+    result.cells_[i].emission *= share;
+  });
+  forEachCell(directGrid_, [&](glm::ivec3 cell, std::size_t i) { result.direct_[i] *= shareOf(directGrid_, cell, clip); });
   return result;
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "engine/scene/lighting.h"
+#include "engine/scene/ray_clip.h"
 #include "engine/volume/classification.h"
 #include "engine/volume/volume.h"
 
@@ -57,6 +58,8 @@ class ScatteringMedium {
   void add(const Volume& part, glm::ivec3 first, const Classification& classification);
   /// The same medium in cells of twice the edge, whose direct cells are this one's cells.
   ScatteringMedium coarser() const;
+  /// The same medium in a part of the volume's index space. Cells that are partly in it count so far as they are.
+  ScatteringMedium clipped(const RayClip& clip) const;
 
   const glm::dmat4& indexToWorld() const { return indexToWorld_; }
   const CellGrid& grid() const { return grid_; }
