@@ -34,10 +34,28 @@ bool equalButFunction(const SceneDescription& a, const SceneDescription& b) {
   return withoutFunction(a) == withoutFunction(b);
 }
 
+/// Whether clip box and plane are all that the scenes of a volume differ in, apart from the camera.
+bool equalButClipping(const SceneDescription& a, const SceneDescription& b) {
+  const auto withoutClipping = [](SceneDescription scene) {
+    scene.input.clipBox.reset();
+    scene.input.clipPlane.reset();
+    scene.camera = {};
+    scene.output = {};
+    return scene;
+  };
+  return withoutClipping(a) == withoutClipping(b);
+}
+
+/// Whether an image of the same volume may be drawn with clipped rays (FrameSettings::clip).
+bool mayClipRays(const DrawnImage& drawn) {
+  return drawn.isWholeOnDevice && drawn.scene.added.empty() && drawn.request.scene.method.drawing() == Draw::Gather;
+}
+
 const char* nameOf(Purpose purpose) {
   switch (purpose) {
     case Purpose::Move:
     case Purpose::Classify:
+    case Purpose::Clip:
     case Purpose::Edit:
       return "quick";
     case Purpose::Refine:
@@ -79,6 +97,11 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
     if (result.drawn && result.drawn->layers) layered_ = result.drawn;
     return false;
   }
+  if (&thread == clipping_.get()) {
+    clippable_.reset();
+    if (result.drawn) clippable_ = result.drawn->request.scene;
+    if (std::exchange(preparesClipping_, false)) return false;
+  }
   answered_ = std::max(answered_, result.number);
   if (&thread == &quick_) refines_ = false;
   if (!result.drawn) {
@@ -92,16 +115,16 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
   const ImageRequest& request = result.drawn->request;
   const double time = result.drawn->milliseconds;
   // The first image of a movement also makes what the others keep.
-  if ((request.purpose == Purpose::Move || request.purpose == Purpose::Classify) && state.latest &&
-      state.latest->request.purpose == request.purpose)
-    movePace_.took(time);
+  const bool isOfAllVoxels = request.purpose == Purpose::Move || request.purpose == Purpose::Classify || request.purpose == Purpose::Clip;
+  if (isOfAllVoxels && state.latest && state.latest->request.purpose == request.purpose) movePace_.took(time);
   if (request.purpose == Purpose::Edit) editPace_.took(time);
-  if (&thread == &whole_) {
+  if (&thread == &whole_ && request.purpose != Purpose::Clip) {
     wholeRevision_ = request.revision;
     classified_.reset();
-    if (const Scene& scene = result.drawn->scene;
-        result.drawn->isWholeOnDevice && scene.added.empty() && scene.classification.isPost(*scene.volume))
-      classified_ = request.scene;
+    unclipped_.reset();
+    const Scene& scene = result.drawn->scene;
+    if (result.drawn->isWholeOnDevice && scene.added.empty() && scene.classification.isPost(*scene.volume)) classified_ = request.scene;
+    if (!request.scene.input.isClipped() && mayClipRays(*result.drawn)) unclipped_ = withDensityScale(request.scene, scene);
   }
   const bool isWhole = request.purpose == Purpose::Whole;
   if (isWhole) {
@@ -116,7 +139,8 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
 
 bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
   bool isNew = std::exchange(isMixed_, false);
-  for (RenderThread* const thread : {&quick_, &whole_}) {
+  for (RenderThread* const thread : {&quick_, &whole_, clipping_.get()}) {
+    if (thread == nullptr) continue;
     const std::optional<RenderThread::Result> result = thread->take();
     if (!result || !keep(state, *thread, *result, failure)) continue;
     std::shared_ptr<const DrawnImage> drawn = result->drawn;
@@ -144,6 +168,22 @@ bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
   return isNew;
 }
 
+bool ImageDirector::isReadyToClip(const SceneDescription& scene) const {
+  return clippable_ && equalButClipping(*clippable_, scene);
+}
+
+/// The thread that has the volume ready to be drawn with clipped rays, or null.
+RenderThread* ImageDirector::clippingThread(const SceneDescription& scene) {
+  if (isReadyToClip(scene)) return clipping_.get();
+  return unclipped_ && equalButClipping(*unclipped_, scene) ? &whole_ : nullptr;
+}
+
+/// Whether to make ready, while nothing else is to be done, what a change of clip box or plane is drawn of.
+bool ImageDirector::wantsClipping(const ViewState& state) const {
+  return clippingAskedOf_ != lastRequest_ && state.scene.input.isClipped() && isComplete(state) && state.diagnosis.shown == Shown::Image &&
+         !wholeIsQuick_ && !wholeOnly_ && mayClipRays(*state.whole) && !isReadyToClip(state.scene);
+}
+
 void ImageDirector::askOfChange(const ViewState& state) {
   lastPurpose_ = state.changed ? Purpose::Edit : Purpose::Move;
   if (whole_.busyFor() > kNotQuick) wholeIsQuick_ = false;
@@ -154,14 +194,16 @@ void ImageDirector::askOfChange(const ViewState& state) {
   const bool showsImage = state.diagnosis.shown == Shown::Image;
   const bool moves = !state.changed && wholeRevision_ == revision_ && showsImage;
   const bool classifies = state.changed && classified_ && showsImage && equalButFunction(*classified_, state.scene);
-  const Purpose purpose = moves ? Purpose::Move : classifies ? Purpose::Classify : Purpose::Edit;
+  RenderThread* const clipping = !moves && showsImage && state.scene.input.isClipped() ? clippingThread(state.scene) : nullptr;
+  const Purpose purpose = moves ? Purpose::Move : classifies ? Purpose::Classify : clipping != nullptr ? Purpose::Clip : Purpose::Edit;
   // A whole image in full size is given up for what is wanted now.
   if (purpose == Purpose::Edit || drawsWhole_ || drawsLayers_) whole_.abandon();
   drawsWhole_ = drawsLayers_ = false;
   if (purpose != Purpose::Edit && state.latest && state.latest->request.purpose != purpose) movePace_.beginFrom(wholeTime_);
   const AdaptiveResolution& pace = purpose == Purpose::Edit ? editPace_ : movePace_;
   askedVoxels_ = state.camera || moves ? pace.voxelsAlongEdge() : kFirstVoxels;
-  RenderThread& thread = askedVoxels_ == kAllVoxels ? whole_ : quick_;
+  RenderThread& thread = purpose == Purpose::Clip ? *clipping : askedVoxels_ == kAllVoxels ? whole_ : quick_;
+  if (purpose == Purpose::Clip) preparesClipping_ = false;
   thread.ask(request(state, purpose, askedVoxels_, pace.quality()));
 }
 
@@ -238,6 +280,15 @@ void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
     ImageRequest layers = request(state, Purpose::Whole, kAllVoxels, 1.0);
     layers.layers = edited_;
     whole_.ask(std::move(layers));
+  } else if (!moves && wantsClipping(state)) {
+    clippingAskedOf_ = lastRequest_;
+    preparesClipping_ = true;
+    if (!clipping_) clipping_ = std::make_unique<RenderThread>(device_, volumes_, Window::wake);
+    clipping_->ask(request(state, Purpose::Clip, kAllVoxels, movePace_.quality()));
+  }
+  if (!state.scene.input.isClipped()) {
+    clipping_.reset();
+    clippable_.reset();
   }
 }
 
@@ -248,6 +299,7 @@ bool ImageDirector::isComplete(const ViewState& state) const {
 void ImageDirector::end() {
   quick_.end();
   whole_.end();
+  if (clipping_) clipping_->end();
 }
 
 std::optional<std::pair<std::string, double>> ImageDirector::activity() const {

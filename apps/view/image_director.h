@@ -3,6 +3,7 @@
 
 #include <chrono>
 #include <exception>
+#include <memory>
 
 #include "apps/view/image_pace.h"
 #include "apps/view/render_thread.h"
@@ -32,6 +33,8 @@ class ImageDirector {
   bool isSettled() const { return answered_ == lastRequest_ && askedOfWhole_ == lastRequest_ && !refines_; }
   /// Whether there are layers of the image, of which it is mixed at once when colours change.
   bool mayMix(const ViewState& state) const { return layered_ && layered_->layers->fit(state.scene); }
+  /// Whether a clipped volume's box and plane can be moved at once, with all voxels.
+  bool isReadyToClip(const SceneDescription& scene) const;
   std::optional<std::pair<std::string, double>> activity() const;
   /// Whether a file is being read; gives that up, so that there is no image until something changes.
   bool reads() const { return volumes_.reading().has_value(); }
@@ -39,12 +42,14 @@ class ImageDirector {
 
   /// Abandons everything, for good, without waiting for that.
   void end();
-  bool isBusy() const { return quick_.isBusy() || whole_.isBusy(); }
+  bool isBusy() const { return quick_.isBusy() || whole_.isBusy() || (clipping_ && clipping_->isBusy()); }
 
  private:
   static bool isPending(const ViewState& state) { return state.changed || state.moved; }
   void askOfChange(const ViewState& state);
   void refine(const ViewState& state);
+  RenderThread* clippingThread(const SceneDescription& scene);
+  bool wantsClipping(const ViewState& state) const;
   void noteEdit(const SceneDescription& scene);
   bool mix(ViewState& state);
   bool wantsLayers(const ViewState& state) const;
@@ -54,6 +59,9 @@ class ImageDirector {
   const Device& device_;
   VolumeCache volumes_;
   RenderThread quick_, whole_;  ///< for images of few voxels, and of all voxels
+  /// For images with clipped rays of the volume that is not clipped, beside `whole_`, which has what is left of it. Null while nothing is
+  /// clipped.
+  std::unique_ptr<RenderThread> clipping_;
   const bool wholeOnly_;
   std::uint64_t lastRequest_ = 0, askedOfWhole_ = 0, answered_ = 0, failed_ = 0;
   std::uint64_t revision_ = 1, wholeRevision_ = 0;  ///< of everything but the camera; that of the last image of all voxels
@@ -69,6 +77,10 @@ class ImageDirector {
   SceneDescription asked_;                          ///< of the last request
   /// Of the last image of all voxels, where these are classified by a transfer function after interpolation.
   std::optional<SceneDescription> classified_;
+  /// Scenes for which `whole_` and `clipping_` have the whole volume ready, to be drawn with clipped rays.
+  std::optional<SceneDescription> unclipped_, clippable_;
+  bool preparesClipping_ = false;                   ///< whether `clipping_` draws an image that is not shown, to be ready
+  std::uint64_t clippingAskedOf_ = 0;               ///< the request for which that was asked
   std::optional<Colors> edited_;                    ///< what was edited last, if it is nothing but colours
   bool drawsLayers_ = false, isMixed_ = false;      ///< isMixed_: ViewState::latest was mixed of layers, and nobody knows yet
   std::uint64_t layersAskedOf_ = 0;                 ///< the request of whose image layers were asked for

@@ -208,7 +208,8 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   const std::shared_ptr<const FilmView> film = request.film.empty() ? nullptr : volumes_.viewOf(request.scene, request.film);
   if (!request.film.empty() && !film) fail(ErrorKind::Input, "no frame of the sequence holds anything to draw");
   const bool clipsCoarse = request.voxelsAlongEdge != kAllVoxels && request.scene.input.isClipped();
-  VolumeCache::Read read = volumes_.read(request.scene, request.number, request.isFrame, !clipsCoarse);
+  const bool clipsRays = request.purpose == Purpose::Clip;
+  VolumeCache::Read read = volumes_.read(request.scene, request.number, request.isFrame, !clipsCoarse && !clipsRays);
   DrawnImage drawn{.request = request,
                    .scene = resolve(request, std::move(read.volume), film.get()),
                    .film = film,
@@ -224,11 +225,12 @@ DrawnImage ImageMaker::make(const ImageRequest& request, const Progress& progres
   FrameSettings settings = frameSettings(request.scene, request.scene.output.aovs.needDepth());
   settings.lighting = drawn.scene.lighting;
   settings.holdout = holdoutOf(request);
+  if (clipsRays) settings.clip = request.scene.input.rayClip(*drawn.scene.volume);
   if (request.purpose != Purpose::Whole && settings.gathers()) {  // a draft
     settings.quality = request.quality / request.scale();
     settings.lod *= float(request.scale());  // blocks as in the whole image, so that none are made for a draft alone
     settings.allowsOldLight = request.purpose == Purpose::Move || request.purpose == Purpose::Classify;
-    if (request.purpose == Purpose::Edit) settings.scatteringCoarseness = 2;
+    if (request.purpose == Purpose::Edit || clipsRays) settings.scatteringCoarseness = 2;
     if (request.purpose == Purpose::Refine) settings.scatteringCoarseness = 1;
   }
   if (request.layers) {

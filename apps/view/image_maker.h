@@ -59,8 +59,9 @@ class VolumeCache {
 };
 
 /// What an image is drawn for: while the camera moves; while nothing but the transfer function changes besides, with the light that there
-/// was before; while something else changes; as a step from there to the whole image; or as that, of all voxels and pixels.
-enum class Purpose { Move, Classify, Edit, Refine, Whole };
+/// was before; while nothing but clip box and plane change besides, of the whole volume with clipped rays; while something else changes; as
+/// a step from there to the whole image; or as that, of all voxels and pixels.
+enum class Purpose { Move, Classify, Clip, Edit, Refine, Whole };
 
 /// The input of an image, to be copied to another thread.
 struct ImageRequest {
@@ -88,7 +89,7 @@ struct ImageRequest {
 
 struct DrawnImage {
   ImageRequest request;    ///< the request that it answers
-  Scene scene;  ///< the resolved scene, with all voxels of the volume; in drafts of fewer voxels also with those that are clipped
+  Scene scene;  ///< the resolved scene, with all voxels of the volume; in drafts of fewer voxels and of clipped rays also those clipped
   std::shared_ptr<const FilmView> film;  ///< of which that scene was chosen; null if it was for the volume alone
   std::shared_ptr<const Volume> whole;   ///< the scene's volume before it was clipped; null where it was not read with its clipping
   DeviceDescription device;  ///< device that made it

@@ -1,8 +1,37 @@
 #include "apps/view/view_state.h"
 
+#include <algorithm>
+
 #include "apps/common/failure.h"
 
 namespace freevoxels {
+
+namespace {
+
+/// Whether lights may be brighter than those that are chosen where none are given, with which white fog is hardly brighter than 0.8.
+bool exceedsDefaultLights(const LightingDescription& lighting) {
+  const auto isBright = [](const LightingDescription::GivenLight& given) {
+    const glm::dvec3& color = given.light.color;
+    return !given.light.atInfinity || given.light.intensity * std::max({color.r, color.g, color.b}) > 1.01 * kDefaultIrradiance;
+  };
+  return lighting.environment || lighting.lights.size() > 1 || std::ranges::any_of(lighting.lights, isBright);
+}
+
+/// Whether pixels may be brighter than 1, by lights, light from around or emission. Channels send out the colours of their values. `drawn`
+/// is an image of the scene, maybe from before the last change.
+bool mayBurnOut(const SceneDescription& scene, const DrawnImage& drawn) {
+  if (scene.method.showsValues()) return false;
+  const bool isOfChannels = drawn.scene.volume && drawn.scene.volume->madeOf == MadeOf::Channels;
+  const bool letsLightThrough =
+      isOfChannels && scene.added.empty() && !drawn.channels.empty() && std::ranges::all_of(drawn.channels, &ChannelStyle::emits);
+  if (!scene.lighting.unlit && !letsLightThrough && exceedsDefaultLights(scene.lighting)) return true;
+  const EmissionDescription& emission = scene.emission;
+  const bool isFire = emission.isAsked() || (emission.emission != false && drawn.scene.classification.emission);
+  const auto shines = [](const SceneVolume& one) { return one.classification.emission.has_value(); };
+  return (isFire && !isOfChannels) || std::ranges::any_of(drawn.scene.added, shines);
+}
+
+}  // namespace
 
 std::optional<MethodDescription> ViewState::comparedMethod() const {
   if (diagnosis.shown != Shown::Image) return std::nullopt;
@@ -52,6 +81,25 @@ void ViewState::begin(const Scene& first) {
   lighting.ambient = first.lighting->ambient;
 }
 
+void ViewState::chooseToneMap() {
+  std::optional<ToneMap>& given = scene.output.toneMap;
+  if (!camera || !latest || latest->request.scene.input.volume != scene.input.volume || (given && !toneMapIsAutomatic)) return;
+  const bool isBright = mayBurnOut(scene, *latest);
+  if (isBright == given.has_value()) return;
+  given.reset();
+  if (isBright) {
+    given = ToneMap::Filmic;
+    notice = "the tone map is filmic, as the light may be brighter than the screen: the panel View has others";
+  }
+  toneMapIsAutomatic = isBright;
+}
+
+DisplayLook ViewState::look() const {
+  DisplayLook look = scene.output.look();
+  if (toneMapIsAutomatic && latest && latest->request.diagnosis.shown != Shown::Image) look.toneMap = ToneMap::None;
+  return look;
+}
+
 void Edits::takeFlight() {
   CameraDescription& first = scene.camera;
   if (!first.flight) return;
@@ -89,13 +137,17 @@ void ViewState::keepScales(const Scene& of) {
   if (now.emission) scene.emission.take(*now.emission);
 }
 
-void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane) {
-  if (!latest) return;
-  const Classification& now = latest->scene.classification;
+SceneDescription withDensityScale(SceneDescription scene, const Scene& drawn) {
   ClassificationDescription& options = scene.classification;
   // A baked volume has the scale of its file, clipped or not.
-  if (!now.transferFunction && !options.transferFunction && !options.densityScale && !latest->scene.volume->classification)
-    options.takeDensityScale(now.densityScale);
+  if (!drawn.classification.transferFunction && !options.transferFunction && !options.densityScale && !drawn.volume->classification)
+    options.takeDensityScale(drawn.classification.densityScale);
+  return scene;
+}
+
+void ViewState::clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane) {
+  if (!latest) return;
+  scene = withDensityScale(scene, latest->scene);
   scene.input.clipBox = box;
   scene.input.clipPlane = plane;
   changed = true;

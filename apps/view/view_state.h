@@ -25,6 +25,7 @@ struct Edits {
   FlightDescription flight;  ///< the key frames of which the panel "View" makes a flight
   /// The camera of the scene's options. Unknown before the first image, which resolves what is not given.
   std::optional<Camera> camera;
+  bool toneMapIsAutomatic = false;  ///< whether the output's tone map was chosen by ViewState::chooseToneMap
 
   /// Makes the flight of the scene's options, if they have one, that of the panel, and begins with its first camera and lights. Fails as
   /// readFlight().
@@ -62,6 +63,11 @@ struct ViewState : Edits {
   /// Takes camera, transfer function and lights that the options do not give from the first image, so that
   /// they stay as they are.
   void begin(const Scene& first);
+  /// Gives the filmic tone map to an image whose light may be brighter than the screen; none to others, whose colours are those of the
+  /// data. Does nothing where another one was given, and before the first image of the volume. To be called after each change.
+  void chooseToneMap();
+  /// How the last image is shown: a diagnosis, whose colours are no light, without a tone map that was chosen for the image.
+  DisplayLook look() const;
   /// Uses this camera, unless it shows nothing: `problem` then gives the reason.
   void setCamera(const Camera& next);
   /// Opens another volume, as in the scene; in a sequence if it is one of its frames.
@@ -75,6 +81,9 @@ struct ViewState : Edits {
   /// of the volume is there.
   void clip(const std::optional<VoxelBox>& box, const std::optional<ClipPlane>& plane);
 };
+
+/// The scene with the density scale of what was drawn of it, where that was chosen for the volume.
+SceneDescription withDensityScale(SceneDescription scene, const Scene& drawn);
 
 /// The file that was opened: the volume, or the pattern of the sequence of which it is a frame.
 inline const std::string& openedName(const Edits& edits) {

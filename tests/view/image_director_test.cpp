@@ -99,6 +99,36 @@ TEST_F(ImageDirectorTest, EditsOfATransferFunctionAreDrawnWithAllVoxels) {
   EXPECT_EQ(edit().front().purpose, Purpose::Edit) << "voxels are classified before interpolation";
 }
 
+/// The first time of the volume that is shown, whose rays are clipped; then of one that is kept beside what is left of it.
+TEST_F(ImageDirectorTest, PlanesAndBoxesAreMovedWithAllVoxels) {
+  state.scene.input = {.volume = "procedural:head", .grid = std::nullopt, .resolution = glm::ivec3(100)};
+  state.scene.lighting.unlit = false;
+  state.scene.classification.transferFunction = "skin-and-bone";
+  follow();
+  const auto clip = [&](double offset) {
+    state.clip({}, ClipPlane{.point = glm::dvec3(offset), .normal = {1.0, 0.5, 0.2}});
+    return follow();
+  };
+  for (const double offset : {0.0, 0.1, 0.05}) {
+    const std::vector<ImageRequest> shown = clip(offset);
+    ASSERT_GE(shown.size(), 2u);
+    EXPECT_EQ(shown.front().purpose, Purpose::Clip) << offset;
+    EXPECT_EQ(shown.front().voxelsAlongEdge, kAllVoxels);
+    EXPECT_EQ(shown.back().purpose, Purpose::Whole);
+    // Gets the whole volume ready for the next plane, without an image that is shown.
+    const std::shared_ptr<const DrawnImage> latest = state.latest;
+    ASSERT_TRUE(askUntil(director, state, [&] { return director.isReadyToClip(state.scene); }));
+    EXPECT_EQ(state.latest, latest);
+  }
+  ImageDirector another(device(), true);
+  ViewState same = state;
+  same.changed = true;
+  same.whole = same.latest = nullptr;
+  ASSERT_TRUE(askUntil(another, same, [&] { return another.isComplete(same); }));
+  EXPECT_EQ(downloadImage(device(), *state.whole->image).pixels, downloadImage(device(), *same.whole->image).pixels)
+      << "as of a volume that was clipped when it was opened";
+}
+
 /// The image that is shown at once after an edit of colours, beside the whole image that follows it.
 TEST_F(ImageDirectorTest, ColoursAreMixedOfLayersOnceTheyWereEdited) {
   const auto expectMixed = [&] {

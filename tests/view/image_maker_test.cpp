@@ -49,7 +49,8 @@ TEST_F(ImageMakerTest, TurningALightKeepsTheVolumeAndItsOccupancy) {
   EXPECT_EQ(timesOf(turned, "bricks").size(), 0u);
 }
 
-/// As while a plane or a side of the box is dragged: the coarse volume is clipped, and drawn with half of the quality.
+/// As while a plane or a side of the box is dragged: with half of the quality, of the whole volume with clipped rays, or where that is not
+/// ready of the coarse volume without what is clipped.
 TEST_F(ImageMakerTest, DraftsOfAClippedVolumeResembleTheWholeImage) {
   ImageRequest request = litCloud();
   request.scene.input.resolution = glm::ivec3(128);
@@ -59,7 +60,7 @@ TEST_F(ImageMakerTest, DraftsOfAClippedVolumeResembleTheWholeImage) {
   request.scene.camera.look(unclipped.scene.camera);
   request.scene.classification.takeDensityScale(unclipped.scene.classification.densityScale);
   const glm::ivec3 last = unclipped.scene.volume->dimensions - 1;
-  ImageMaker ofDrafts(device(), volumes_);
+  ImageMaker ofDrafts(device(), volumes_), ofRays(device(), volumes_);
   for (const int offset : {0, 5})
     for (const bool byPlane : {true, false}) {
       InputDescription& input = request.scene.input;
@@ -77,6 +78,10 @@ TEST_F(ImageMakerTest, DraftsOfAClippedVolumeResembleTheWholeImage) {
       const double likeWhole = psnr(downloadImage(device(), *ofDrafts.make(draft, {}).image), whole);
       EXPECT_GT(likeWhole, 25.0) << offset << " " << byPlane;
       EXPECT_GT(likeWhole, psnr(uncut, whole) + 6.0) << offset << " " << byPlane;
+      draft.purpose = Purpose::Clip;
+      draft.voxelsAlongEdge = kAllVoxels;
+      const double likeRays = psnr(downloadImage(device(), *ofRays.make(draft, {}).image), whole);
+      EXPECT_GT(likeRays, 30.0) << offset << " " << byPlane;
     }
 }
 
