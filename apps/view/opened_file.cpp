@@ -35,6 +35,7 @@ void openScene(ViewState& state, const std::string& file) {
   const std::optional<Sequence> sequence = takeVolume(scene);
   scene.camera.size = state.scene.camera.size;
   state.show(scene, sequence);
+  state.toneMapIsAutomatic = false;
 }
 
 bool isTransferFunction(const std::string& file) {

@@ -21,6 +21,10 @@ constexpr int kMaxFrames = 1'000'000;
 void ViewOptions::add(CLI::App& app) {
   for (const char* section : {"input", "volumes", "output", "classification", "emission", "camera", "light"})
     scene.addSection(app, section);
+  app.get_option("--tone-map")
+      ->description(
+          "How bright light is brought into the range of the screen, a .png or a .jpg [filmic where it may be brighter than that, else "
+          "none: it is clipped]");
   scene.addFile(app);
   scene.addMethod(app);
   device.add(app);

@@ -4,6 +4,8 @@
 #include <imgui.h>
 
 #include <array>
+#include <string>
+#include <vector>
 
 #include "apps/view/navigation.h"
 #include "apps/view/widgets.h"
@@ -86,8 +88,15 @@ void drawBackground(ViewState& state) {
   if (output.background) state.retoned |= editColor("Colour", *output.background);
   state.retoned |= slideOptional("Exposure", output.exposure, 0.0, -8.0, 8.0, "%.1f EV");
   hint("Stops by which the image is brightened", "--exposure");
-  state.retoned |= choose("Tone map", kToneMapWords, output.toneMap, ToneMap::None);
-  hint("Curve that maps bright light into the range of the screen", "--tone-map");
+  int toneMap = int(output.toneMap.value_or(ToneMap::None)) - kToneMapWords.first;
+  if (choose("Tone map", kToneMapWords.texts, toneMap)) {
+    output.toneMap = kToneMapWords.at(toneMap);  // none as well, so that light that comes later changes nothing
+    state.toneMapIsAutomatic = false;
+    state.retoned = true;
+  }
+  std::string meaning = "Curve that maps bright light into the range of the screen";
+  if (state.toneMapIsAutomatic) meaning += ": filmic, as the light may be brighter than the screen; choose none for linear values";
+  hint(meaning.c_str(), "--tone-map");
 }
 
 }  // namespace

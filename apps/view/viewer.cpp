@@ -87,7 +87,10 @@ void Viewer::opened(const std::string& file) {
 
 void Viewer::takeImages() {
   std::exception_ptr failure;
-  if (director_.take(state_, failure)) shown_.show(state_.latest, state_.latest == state_.whole && state_.scene.output.look().background);
+  const bool isNew = director_.take(state_, failure);
+  state_.chooseToneMap();
+  takeOutput();
+  if (isNew) shown_.show(state_.latest, state_.latest == state_.whole && state_.scene.output.look().background);
   if (options_.screenshot && failure) std::rethrow_exception(failure);
 }
 
@@ -306,7 +309,7 @@ void Viewer::drawFrame() {
   director_.ask(state_, area_.pixels(), area_.moves() || plays());
   if (!paint) return;
   painted_ = Clock::now();
-  painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { shown_.record(commands, state_.scene.output.look()); });
+  painter_->draw(*ImGui::GetDrawData(), swapchain_, [this](Commands& commands) { shown_.record(commands, state_.look()); });
   shown_.painted();
   if (director_.isComplete(state_) && !look_.waits() && !grids_.isMaking()) ++completeFrames_;
   if (options_.screenshot && completeFrames_ == options_.after.value_or(1)) writeScreenshot();

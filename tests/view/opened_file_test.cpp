@@ -108,6 +108,16 @@ TEST_F(OpenedFile, ASceneBringsAllButTheSize) {
   EXPECT_TRUE(state.changed);
 }
 
+TEST_F(OpenedFile, AToneMapThatWasChosenForLightGoesOnToVolumesAndNotToScenes) {
+  state.scene.output.toneMap = ToneMap::Filmic;
+  state.toneMapIsAutomatic = true;
+  openFile(state, "procedural:head");
+  EXPECT_TRUE(state.toneMapIsAutomatic) << "its first image says whether it has light";
+  openFile(state, made("given.json", R"({"input": {"volume": "procedural:head"}, "output": {"tone-map": "none"}})"));
+  EXPECT_EQ(state.scene.output.toneMap, ToneMap::None);
+  EXPECT_FALSE(state.toneMapIsAutomatic);
+}
+
 TEST_F(OpenedFile, ATransferFunctionTakesThePlaceOfDensities) {
   const std::string file = made("tf.json", R"({"opacity": [[0, 0], [1, 1]]})");
   openFile(state, file);

@@ -50,6 +50,131 @@ TEST(ViewState, ClippingKeepsTheDensityScaleUnlessTheFileHasIt) {
   }
 }
 
+class ToneMapTest : public testing::Test {
+ protected:
+  /// As if an image of the state had come.
+  void draw(bool emits = false, const Volume& volume = {}) {
+    Scene scene{.volume = std::make_shared<const Volume>(volume), .classification = {}};
+    if (emits) scene.classification.emission.emplace();
+    state.latest = std::make_shared<const DrawnImage>(DrawnImage{.request = {.scene = state.scene}, .scene = scene});
+    state.camera = Camera{};
+    state.chooseToneMap();
+  }
+  /// Besides the one that is there by default.
+  void addLight() {
+    state.scene.lighting.lights.resize(2);
+    state.scene.lighting.unlit = false;
+    state.changed = true;
+    state.chooseToneMap();
+  }
+  std::optional<ToneMap> toneMap() const { return state.scene.output.toneMap; }
+
+  ViewState state;
+};
+
+TEST_F(ToneMapTest, IsFilmicWhereLightMayBeBrighterThanTheScreenWhichIsSaid) {
+  addLight();
+  EXPECT_FALSE(toneMap()) << "nothing is known before the first image";
+  draw();
+  EXPECT_EQ(toneMap(), ToneMap::Filmic);
+  EXPECT_TRUE(state.toneMapIsAutomatic);
+  EXPECT_NE(state.notice.find("filmic"), std::string::npos);
+  state.notice.clear();
+  draw();
+  EXPECT_EQ(state.notice, "") << "said once";
+  state.scene.method.mode = IntensityProjection::Maximum;
+  draw();
+  EXPECT_FALSE(toneMap()) << "values are shown, on which no light shines";
+}
+
+TEST_F(ToneMapTest, IsNoneWithTheLightsOfTheDefault) {
+  state.scene.lighting.lights.resize(1);
+  state.scene.lighting.ambient = glm::dvec3(0.2);
+  draw();
+  EXPECT_FALSE(toneMap()) << "colours are those of the colour bar";
+  state.scene.lighting.lights.front().light.intensity = 1.5 * kDefaultIrradiance;
+  draw();
+  EXPECT_EQ(toneMap(), ToneMap::Filmic);
+  state.scene.lighting.lights.front().light = {.atInfinity = false};
+  draw();
+  EXPECT_EQ(toneMap(), ToneMap::Filmic) << "a point light is brighter near it";
+  state.scene.lighting.lights.resize(0);
+  draw();
+  EXPECT_FALSE(toneMap());
+  state.scene.lighting.environment = "sky.exr";
+  draw();
+  EXPECT_EQ(toneMap(), ToneMap::Filmic);
+}
+
+TEST_F(ToneMapTest, IsNoneWithoutLightUnlessThereIsEmission) {
+  state.scene.lighting.unlit = true;
+  state.scene.classification.transferFunction = "viridis";
+  draw();
+  EXPECT_FALSE(toneMap());
+  EXPECT_FALSE(state.toneMapIsAutomatic);
+  EXPECT_EQ(state.notice, "");
+  draw(true);
+  EXPECT_EQ(toneMap(), ToneMap::Filmic);
+  state.scene.emission.emission = false;
+  state.chooseToneMap();
+  EXPECT_FALSE(toneMap()) << "the image of it has not come yet";
+  Volume channels;
+  channels.madeOf = MadeOf::Channels;
+  state.scene.emission = {};
+  draw(true, channels);
+  EXPECT_FALSE(toneMap()) << "they send out the colours of their values";
+}
+
+TEST_F(ToneMapTest, ThatIsGivenStays) {
+  for (const ToneMap given : {ToneMap::None, ToneMap::Aces}) {
+    state.scene.output.toneMap = given;
+    draw();
+    EXPECT_EQ(toneMap(), given);
+    addLight();
+    draw();
+    EXPECT_EQ(toneMap(), given);
+    EXPECT_FALSE(state.toneMapIsAutomatic);
+    EXPECT_EQ(state.notice, "");
+  }
+}
+
+TEST_F(ToneMapTest, ComesAndGoesWithTheFirstLightAndWithItsUndoing) {
+  EditHistory history;
+  state.scene.lighting.unlit = true;
+  draw();
+  history.follow(state, false, false);
+  addLight();
+  EXPECT_EQ(toneMap(), ToneMap::Filmic);
+  history.follow(state, true, false);
+  history.follow(state, false, false);
+  history.undo(state);
+  state.chooseToneMap();
+  EXPECT_FALSE(toneMap());
+  EXPECT_FALSE(history.canUndo()) << "it is no step of its own";
+  history.redo(state);
+  state.chooseToneMap();
+  EXPECT_EQ(toneMap(), ToneMap::Filmic);
+  EXPECT_TRUE(state.toneMapIsAutomatic);
+  state.scene.lighting = {.unlit = true};
+  state.chooseToneMap();
+  EXPECT_FALSE(toneMap());
+}
+
+TEST_F(ToneMapTest, IsNotAppliedToDiagnosesUnlessItIsGiven) {
+  addLight();
+  draw();
+  EXPECT_EQ(state.look().toneMap, ToneMap::Filmic);
+  state.diagnosis.shown = Shown::Energy;
+  EXPECT_EQ(state.look().toneMap, ToneMap::Filmic) << "the last image is none yet";
+  DrawnImage drawn = *state.latest;
+  drawn.request.diagnosis = state.diagnosis;
+  state.latest = std::make_shared<const DrawnImage>(drawn);
+  EXPECT_EQ(state.look().toneMap, ToneMap::None);
+  EXPECT_EQ(toneMap(), ToneMap::Filmic) << "it is that of the image, which is saved";
+  state.toneMapIsAutomatic = false;
+  EXPECT_EQ(state.look().toneMap, ToneMap::Filmic);
+}
+
 TEST_F(EditHistoryTest, UndoAndRedoGoThroughTheStepsInOrder) {
   for (const double stops : {1.0, 2.0, 3.0}) {
     expose(stops);
