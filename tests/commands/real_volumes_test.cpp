@@ -26,39 +26,36 @@ class RealVolumes : public CommandTest {
 
 }  // namespace
 
-TEST_F(RealVolumes, TheWellKnownOnesShow) {
-  for (const char* name : {"wdas_cloud_sixteenth.vdb", "smoke1.vdb", "dragon_with_xform.vdb",
-                           "usd_smoke_000003.vdb", "sphere_ls.vdb"}) {
-    SCOPED_TRACE(name);
-    if (!std::filesystem::exists(kData / name)) continue;
-    expectSuccess(render(kData / name));
-    const Image image = readExr(folder / "a.exr");
-    const auto visible = std::ranges::count_if(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.2f; });
-    EXPECT_GT(visible, 64 * 64 / 20);
-  }
-}
-
-/// As the oracle's do, on a screen.
+/// As the oracle's do, on a screen: whole, and a part of each in a light, whose shadow rays take the oracle twenty times as long.
 TEST_F(RealVolumes, FiresShine) {
-  for (const char* name : {"usd_densityAndHeat.vdb", "blender_fluid_0050.vdb"}) {
-    SCOPED_TRACE(name);
-    if (!std::filesystem::exists(kData / name)) continue;
-    const auto draw = [&](const char* command) {
-      Arguments arguments{command, (kData / name).string(), (folder / "a.png").string()};
-      // No ambient light, which takes the oracle minutes; a pixel is about a voxel.
-      for (const char* word : {"--size", "24x24", "--quiet", "--background", "0,0,0", "--emission", "--light", "direction=0.3,1,0.4"})
-        arguments.emplace_back(word);
+  struct Fire {
+    const char* name;
+    const char* part;
+  };
+  for (const Fire& fire : {Fire{"usd_densityAndHeat.vdb", "6,6,0,15,15,9"}, Fire{"blender_fluid_0050.vdb", "8,4,6,17,13,15"}}) {
+    SCOPED_TRACE(fire.name);
+    if (!std::filesystem::exists(kData / fire.name)) continue;
+    const auto draw = [&](const char* command, const Arguments& look) {
+      Arguments arguments{command,     (kData / fire.name).string(), (folder / "a.png").string(), "--quiet", "--background", "0,0,0",
+                          "--emission"};
+      arguments.insert(arguments.end(), look.begin(), look.end());
       expectSuccess(runFreevoxels(arguments));
       return readPng(folder / "a.png");
     };
-    const Image truth = draw("oracle");
-    EXPECT_GE(compareImages(draw("render"), truth).psnr, 38.0);
-    const auto shining = std::ranges::count_if(truth.pixels, [](glm::vec4 pixel) { return pixel.r > 0.5f; });
-    EXPECT_GE(shining, 3);  // one of the flames is behind its smoke
+    // A pixel is about a voxel. No ambient light, which takes the oracle minutes.
+    const Arguments whole{"--size", "24x24", "--unlit"}, lit{"--size", "16x16", "--light", "direction=0.3,1,0.4", "--clip-box", fire.part};
+    for (const Arguments& look : {whole, lit}) {
+      const Image truth = draw("oracle", look);
+      EXPECT_GE(compareImages(draw("render", look), truth).psnr, 38.0) << look.back();
+      const auto shining = std::ranges::count_if(truth.pixels, [](glm::vec4 pixel) { return pixel.r > 0.5f; });
+      EXPECT_GE(shining, 3) << look.back();  // one of the flames is behind its smoke
+    }
   }
 }
 
-TEST_F(RealVolumes, EveryFileIsDrawnOrRefused) {
+TEST_F(RealVolumes, EveryFileIsDrawnOrRefusedAndTheWellKnownOnesShow) {
+  const std::set<std::string> wellKnown{"wdas_cloud_sixteenth.vdb", "smoke1.vdb", "dragon_with_xform.vdb", "usd_smoke_000003.vdb",
+                                        "sphere_ls.vdb"};
   std::set<std::filesystem::path> files;
   for (const auto& entry : std::filesystem::recursive_directory_iterator(kData))
     if (entry.is_regular_file()) files.insert(entry.path());
@@ -67,6 +64,12 @@ TEST_F(RealVolumes, EveryFileIsDrawnOrRefused) {
   for (const std::filesystem::path& file : files) {
     SCOPED_TRACE(file.string());
     const ProgramResult result = render(file);
+    if (wellKnown.contains(file.filename().string())) {
+      expectSuccess(result);
+      const Image image = readExr(folder / "a.exr");
+      const auto visible = std::ranges::count_if(image.pixels, [](glm::vec4 pixel) { return pixel.a > 0.2f; });
+      EXPECT_GT(visible, 64 * 64 / 20);
+    }
     if (result.exitCode == 0) {
       ++drawn;
       EXPECT_EQ(folder.fileCount(), 2u);

@@ -177,7 +177,7 @@ TEST_F(GatherLightTest, MoreVoxelsThanTexelsGiveTheSameImage) {
       classification.order = order;
       Renderer texels(device(), *volume, classification, {}), addresses(limited, *volume, classification, {});
       for (const std::optional<Lighting>& lit : {std::optional<Lighting>(), std::optional(lighting)}) {
-        FrameSettings settings = gathering({88, 88});
+        FrameSettings settings = gathering({64, 64});
         settings.lighting = lit;
         const Camera camera = framingCamera(*volume, 42.0, 33.0, 1.0, {});
         EXPECT_GT(psnr(addresses.render(camera, settings), texels.render(camera, settings)), 100.0);

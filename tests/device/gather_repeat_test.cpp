@@ -96,11 +96,10 @@ TEST_F(GatherRepeatTest, FramesAndSharesHaveTheSameBitsEveryTimeAndWithAnyNumber
       expectSame(second.render(camera, settings), image);
       if (view != scene % 4) continue;  // shares take longer
       const FixedSums whole = second.renderShares(camera, settings, {});
-      for (const int count : {2, 3}) {
-        FixedSums sums = first.renderShares(camera, settings, {0, count});
-        for (int index = 1; index < count; ++index) sums += second.renderShares(camera, settings, {index, count});
-        EXPECT_EQ(sums.values, whole.values) << count << " shares";
-      }
+      const int count = 2 + int(scene / 4 % 2);  // each view with both
+      FixedSums sums = first.renderShares(camera, settings, {0, count});
+      for (int index = 1; index < count; ++index) sums += second.renderShares(camera, settings, {index, count});
+      EXPECT_EQ(sums.values, whole.values) << count << " shares";
     }
     ++scene;
   }

@@ -83,7 +83,7 @@ TEST_F(ReclassifyTest, FramesAreThoseOfANewRendererWhateverWasDrawnBefore) {
       ASSERT_TRUE(renderer.reclassify(functions[i]));
       Renderer another(device(), volume, functions[i], {});
       // The second camera's rays have another axis, whose quads are older than the function where it was used before.
-      for (double azimuth : {10.0, i % 2 == 0 ? 100.0 : 10.0})
+      for (double azimuth : i % 2 == 0 ? std::vector{10.0, 100.0} : std::vector{10.0})
         EXPECT_EQ(renderer.render(camera(volume, azimuth), kinds[kind]).pixels, another.render(camera(volume, azimuth), kinds[kind]).pixels)
             << "kind " << kind << ", function " << i << ", azimuth " << azimuth;
     }

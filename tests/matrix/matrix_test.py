@@ -147,6 +147,8 @@ class MatrixTest(unittest.TestCase):
             write(cls.files / name, kind)
         for command, *words in TABLE["files"]["made"]:
             run([command, *(str(cls.files / word) if word.endswith((".vdb", ".fvx", ".exr")) else word for word in words), "--quiet"])
+        for name, copy in TABLE["files"]["copied"].items():
+            shutil.copyfile(cls.files / name, cls.files / copy)
 
     def outcome(self, driver, number, case):
         """What a driver draws, or the sentence with which it refuses."""

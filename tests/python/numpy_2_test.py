@@ -19,7 +19,7 @@ def environment(folder):
     check = [python, "-c", "import mypy, numpy, sys; sys.exit(not numpy.__version__.startswith('2.'))"]
     if python.exists() and subprocess.run(check, stderr=subprocess.DEVNULL).returncode == 0:
         return python
-    for command in ([sys.executable, "-m", "venv", "--clear", folder], [python, "-m", "pip", "install", "--quiet", "numpy>=2,<3", "mypy"]):
+    for command in ([sys.executable, "-m", "venv", "--clear", folder], [python, "-m", "pip", "install", "--quiet", "--no-compile", "numpy>=2,<3", "mypy"]):
         made = subprocess.run(command, capture_output=True, text=True)
         if made.returncode != 0:
             last = (made.stderr or made.stdout).strip().splitlines()[-1:]
@@ -40,6 +40,10 @@ def main():
     python = environment(pathlib.Path(sys.argv[1]))
     if python is None:
         return SKIPPED
+    # The same tests are run with the validation layers elsewhere. What is imported is compiled once, and nothing else.
+    os.environ.pop("FREEVOXELS_VALIDATION", None)
+    os.environ.pop("PYTHONDONTWRITEBYTECODE", None)
+    os.environ["PYTHONPYCACHEPREFIX"] = str(pathlib.Path(sys.argv[1]) / "compiled")
     print(subprocess.run([python, "-c", "import numpy, freevoxels; print('NumPy', numpy.__version__, 'with', freevoxels.__file__)"],
                          capture_output=True, text=True).stdout, flush=True)
     failed = [test for test in sys.argv[2:] if subprocess.run([python, "-W", "error::DeprecationWarning", test]).returncode != 0]

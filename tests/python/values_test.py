@@ -5,6 +5,7 @@ import collections
 import decimal
 import enum
 import fractions
+import functools
 import logging
 import os
 import pathlib
@@ -28,9 +29,15 @@ class Listed:
 
 
 class KeywordTest(unittest.TestCase):
+    @staticmethod
+    @functools.cache
+    def image_of(*options):
+        """Drawn once, as many values mean the same."""
+        return freevoxels.render(BOX, **{**SMALL, **dict(options)})
+
     def expect_image(self, expected, **options):
         image = freevoxels.render(BOX, **{**SMALL, **options})
-        np.testing.assert_array_equal(image, freevoxels.render(BOX, **{**SMALL, **expected}), str(options))
+        np.testing.assert_array_equal(image, self.image_of(*expected.items()), str(options))
 
     def refused(self, kind, sentence, **options):
         with self.assertRaisesRegex(kind, sentence) as caught:
