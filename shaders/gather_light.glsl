@@ -139,44 +139,52 @@ float layersToClip(vec3 position, vec3 layer) {
   return layers;
 }
 
-const float kClipStep = 8.0;  // layers: an edge of a brick of the finest level
-const int kClipSteps = 32;
+const float kClipStep = float(1 << kBrickLevels);  // blocks
+const int kMaxClipSteps = 24;
+
+// Whether the brick of the quad that is looked up at a place, in blocks, has blocks.
+bool isInBrick(LevelGeometry level, vec3 place) {
+  const ivec3 block = ivec3(floor(vec3(place[kSideA], place[kSideB], place[kAxis] + 0.5)));
+  return brickAt(level, clamp(block, ivec3(0), ivec3(level.dimensions, level.count) - 1)) != 0;
+}
 
 // With kClips: takes from the depths towards the lights at a position what is clipped, which is the depth where the way to the light leaves
-// the part that is drawn. Bricks without voxels have no depths; as nothing is in the way in them, the depth is that of the first brick on
-// the way back to the position. `stored` is the number of layers towards the light of which a voxel's depth is.
+// the part that is drawn. Bricks without blocks have no depths; as nothing is in the way in them, the depth is that where the way back to
+// the position enters the first brick. `stored` is the number of blocks towards the light of which a block's depth is.
 void passClipped(inout vec4 depths, LevelGeometry level, vec3 position, float edge, float stored) {
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
     const vec4 way = layerTowards(i, position);
     const float layers = layersToClip(position, way.xyz);
-    if (layers >= way.w) continue;
-    vec3 there = position + way.xyz * (layers - stored * edge);
-    const vec3 dimensions = edge * vec3(kAxis == 0 ? level.count : level.dimensions.x,
-                                        kAxis == 1 ? level.count : kAxis == 0 ? level.dimensions.x : level.dimensions.y,
-                                        kAxis == 2 ? level.count : level.dimensions.y);
-    if (any(lessThan(there, vec3(-0.5))) || any(greaterThan(there, dimensions - 0.5))) continue;
-    const int steps = clamp(int(ceil(layers / (kClipStep * edge))), 0, kClipSteps);
-    float clippedDepth = layers > 0.0 ? 0.0 : depths[i];
-    bool found = false;
-    int step = 0;
+    const float blocks = layers / edge - stored;
+    vec3 place = (position + 0.5) / edge - 0.5 + blocks * way.xyz;
+    const vec3 last = vec3(kAxis == 0 ? level.count : level.dimensions.x, kAxis == 0 ? level.dimensions.x : kAxis == 1 ? level.count : level.dimensions.y,
+                           kAxis == 2 ? level.count : level.dimensions.y) - 0.5;
+    const bool clips = layers < way.w && all(greaterThan(place, vec3(-0.5))) && all(lessThan(place, last));
+    int steps = clips ? clamp(int(ceil(blocks / kClipStep)), 0, kMaxClipSteps) : 0;
+    float step = 0.0;  // of the last move
     do {
-      if (step < steps) {
-        const vec3 block = (there + 0.5) / edge - 0.5;
-        const int slice = clamp(int(floor(block[kAxis] + 0.5)), 0, level.count - 1);
-        vec4 weights;
-        const int quad = quadAt(level, vec2(block[kSideA], block[kSideB]), slice, weights);
-        if (quad >> (3 * kBrickLevels) != 0) {
-          clippedDepth = lightDepth(i, quad, weights);
-          step = steps;
-          found = true;
+      if (steps > 0) {
+        if (isInBrick(level, place)) {
+          steps = 0;
+        } else {
+          step = kClipStep;
+          place -= kClipStep * way.xyz;
+          --steps;
         }
-        there -= kClipStep * edge * way.xyz;
-        ++step;
       }
-    } while (step < steps);
-    if (!found) clippedDepth = depths[i];
-    depths[i] = max(depths[i] - clippedDepth, 0.0);
+    } while (steps > 0);
+    // To where the brick begins, between this place and the one before.
+    [[unroll]] for (int bisection = 0; bisection < kBrickLevels; ++bisection) {
+      step *= 0.5;
+      const vec3 nearer = place + step * way.xyz;
+      if (isInBrick(level, nearer)) place = nearer;
+    }
+    vec4 weights;
+    const int quad = quadAt(level, vec2(place[kSideA], place[kSideB]), clamp(int(floor(place[kAxis] + 0.5)), 0, level.count - 1), weights);
+    // All that is between the position and the light is clipped, or what is left of the way was empty.
+    const bool isBeyond = layers <= 0.0 || quad >> (3 * kBrickLevels) == 0;
+    if (clips) depths[i] = isBeyond ? 0.0 : max(depths[i] - lightDepth(i, quad, weights), 0.0);
   }
 }
 

@@ -1,6 +1,7 @@
 #include "apps/view/image_pace.h"
 
 #include <array>
+#include <utility>
 
 namespace freevoxels {
 
@@ -43,7 +44,10 @@ int AdaptiveResolution::voxelsAlongEdge() const {
 }
 
 void AdaptiveResolution::took(double milliseconds) {
-  draft_.took(milliseconds);
+  if (std::exchange(begins_, false))
+    draft_.beginFrom(milliseconds, quality());
+  else
+    draft_.took(milliseconds);
   if (all_) return;
   const bool coarsens = quality() < kCoarsensBelow && step_ + 1 < kVoxels.size();
   const bool refines = quality() > kRefinesAbove && step_ > 1 && --rest_ <= 0;

@@ -37,8 +37,11 @@ class AdaptiveResolution {
   int voxelsAlongEdge() const;
   /// FrameSettings::quality of an image in the window's size.
   double quality() const { return draft_.quality(); }
-  /// Chooses the quality of the first image from the time that a whole image took, of all voxels.
-  void beginFrom(double wholeMilliseconds) { draft_.beginFrom(wholeMilliseconds, 1.0); }
+  /// Chooses the quality of the first images from the time that a whole image took, of all voxels, until the first of them is reported.
+  void beginFrom(double wholeMilliseconds) {
+    draft_.beginFrom(wholeMilliseconds, 1.0);
+    begins_ = true;
+  }
   /// Reports the time of the last image.
   void took(double milliseconds);
 
@@ -48,6 +51,7 @@ class AdaptiveResolution {
   bool all_;
   std::size_t step_;  ///< index into the numbers of voxels
   DraftQuality draft_;
+  bool begins_ = false;  ///< whether the quality is an estimate from a whole image
   int images_ = 0;  ///< consecutive images that call for another number of voxels
   int rest_ = 0;      ///< images before more voxels are tried
 };

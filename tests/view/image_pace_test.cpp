@@ -2,6 +2,8 @@
 
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 namespace freevoxels {
 namespace {
 
@@ -86,6 +88,18 @@ TEST(AdaptiveResolution, BeginsWithTheQualityForWhichTheWholeImageSaysThatThereI
   EXPECT_NEAR(pace.quality() * pace.quality() * 400.0, 46.0, 1.0);
   pace.beginFrom(10.0);
   EXPECT_EQ(pace.quality(), 1.0);
+}
+
+/// Drafts may take longer than the whole image says, as they make what that had kept.
+TEST(AdaptiveResolution, BelievesTheFirstImageMoreThanTheWholeOne) {
+  AdaptiveResolution pace(AdaptiveResolution::Voxels::All);
+  pace.beginFrom(400.0);
+  const double first = pace.quality();
+  pace.took(920.0);
+  EXPECT_NEAR(pace.quality(), first * std::sqrt(46.0 / 920.0), 1e-3);
+  const double second = pace.quality();
+  pace.took(920.0);
+  EXPECT_NEAR(pace.quality(), 0.75 * second, 1e-9) << "those after it slowly";
 }
 
 }  // namespace
