@@ -121,7 +121,8 @@ vec4 depthsTowardsLights(int quad, vec4 weights) {
   return depths;
 }
 
-// The way from a position in index space to a light: a vector of a voxel along its longest component, and how often the light is so far away.
+// The way from a position in index space to a light: a vector whose longest component is a voxel, and how many times its length the light is
+// away.
 vec4 layerTowards(int light, vec3 position) {
   if (frame.lights[light].atInfinity != 0) return vec4(frame.lights[light].across, 1e9);
   const vec3 toLight = frame.lights[light].positionOrDirection - position;
@@ -129,11 +130,15 @@ vec4 layerTowards(int light, vec3 position) {
   return vec4(toLight / layers, layers);
 }
 
-// After how many layers the way from a position leaves the part of the volume that is drawn, with kClips; 0 or less where it is not in there.
+// With kClips: after how many layers the way from a position leaves the part of the volume that is drawn; 0 or less where the position is
+// not in there.
 float layersToClip(vec3 position, vec3 layer) {
   float layers = 1e9;
   [[unroll]] for (int axis = 0; axis < 3; ++axis)
-    if (abs(layer[axis]) > 1e-6) layers = min(layers, ((layer[axis] > 0.0 ? frame.clipHigh[axis] : frame.clipLow[axis]) - position[axis]) / layer[axis]);
+    if (abs(layer[axis]) > 1e-6) {
+      const float side = layer[axis] > 0.0 ? frame.clipHigh[axis] : frame.clipLow[axis];
+      layers = min(layers, (side - position[axis]) / layer[axis]);
+    }
   const float change = dot(frame.clipNormal, layer);
   if (change > 1e-6) layers = min(layers, (frame.clipDistance - dot(frame.clipNormal, position)) / change);
   return layers;
@@ -158,9 +163,11 @@ void passClipped(inout vec4 depths, LevelGeometry level, vec3 position, float ed
     const float layers = layersToClip(position, way.xyz);
     const float blocks = layers / edge - stored;
     vec3 place = (position + 0.5) / edge - 0.5 + blocks * way.xyz;
-    const vec3 last = vec3(kAxis == 0 ? level.count : level.dimensions.x, kAxis == 0 ? level.dimensions.x : kAxis == 1 ? level.count : level.dimensions.y,
-                           kAxis == 2 ? level.count : level.dimensions.y) - 0.5;
-    const bool clips = layers < way.w && all(greaterThan(place, vec3(-0.5))) && all(lessThan(place, last));
+    vec3 end;
+    end[kAxis] = float(level.count) - 0.5;
+    end[kSideA] = float(level.dimensions.x) - 0.5;
+    end[kSideB] = float(level.dimensions.y) - 0.5;
+    const bool clips = layers < way.w && all(greaterThan(place, vec3(-0.5))) && all(lessThan(place, end));
     int steps = clips ? clamp(int(ceil(blocks / kClipStep)), 0, kMaxClipSteps) : 0;
     float step = 0.0;  // of the last move
     do {

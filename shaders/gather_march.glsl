@@ -25,7 +25,7 @@ layout(constant_id = 9) const bool kEmits = false;    // whether blocks that are
 layout(constant_id = 10) const bool kLevels = true;   // whether levels of blocks are marched behind scalars
 layout(constant_id = 11) const bool kHoldout = false;  // whether rays end at the depths of a holdout
 layout(constant_id = 14) const bool kClips = false;    // whether rays are marched in a part of the volume alone (GatherFrame::clips)
-layout(constant_id = 15) const bool kQuarters = false;  // whether scalars are classified at the quarters of a stretch, too (GatherFrame::quarters)
+layout(constant_id = 15) const bool kQuarters = false;  // whether scalars are also classified at the quarters of a stretch
 
 // Loops that lanes leave at different times have the form `do { if (goOn) ... } while (goOn)`, where `goOn` compares integers: lavapipe
 // executes the body of any other loop once more with lanes masked, and computes values that are assigned outside of the `if` anew for lanes

@@ -169,7 +169,8 @@ struct ClassifiedScalar {
 
 // The mean of extinction times colour and extinction between two scalars of a stretch, with kQuarters by another one between them, which is
 // `fraction` of the stretch from its first slice.
-vec4 meanOfScalars(LevelGeometry level, Ray ray, int before, int slice, bool within, float fraction, ClassifiedScalar from, ClassifiedScalar to) {
+vec4 meanOfScalars(LevelGeometry level, Ray ray, int before, int slice, bool within, float fraction, ClassifiedScalar from,
+                   ClassifiedScalar to) {
   const vec4 mean = meanBetween(from.scalar, from.integral, from.medium, to.scalar, to.integral, to.medium);
   if (!kQuarters) return mean;
   const vec2 position = ray.origin + ray.slope * mix(float(before), float(slice), fraction);
@@ -208,8 +209,10 @@ Stretch scalarStretch(SliceValues last, LevelGeometry level, Ray ray, int slice,
   vec4 integral, medium;
   tableAt(scalar, integral, medium);
   const ClassifiedScalar between = ClassifiedScalar(scalar, integral, medium);
-  stretch.near = meanOfScalars(level, ray, before, slice, within, 0.25, ClassifiedScalar(first.scalar, first.integral, first.medium), between);
-  stretch.far = meanOfScalars(level, ray, before, slice, within, 0.75, between, ClassifiedScalar(second.scalar, second.integral, second.medium));
+  const ClassifiedScalar begin = ClassifiedScalar(first.scalar, first.integral, first.medium);
+  const ClassifiedScalar end = ClassifiedScalar(second.scalar, second.integral, second.medium);
+  stretch.near = meanOfScalars(level, ray, before, slice, within, 0.25, begin, between);
+  stretch.far = meanOfScalars(level, ray, before, slice, within, 0.75, between, end);
   stretch.coverage = middle.y;
   stretch.adds = last.coverage + middle.y + found.coverage > 0.0 && stretch.near.a + stretch.far.a > 0.0;
   if (kCube) stretch.adds = stretch.adds && isOwn(level, ray.origin + ray.slope * float(there), there);
