@@ -103,17 +103,19 @@ void DeviceScene::solveScattering(const FrameSettings& settings, const Progress&
     other.emplace(device, ScatteringMedium(hostVolume, classification));
   }
   ScatteringSolver& solver = other ? *other : *scattering_;
-  if (!settings.clip) solver.solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
+  if (settings.clip) {
+    ScatteringSolver clipped = solver.clipped(*settings.clip, settings.scatteringCoarseness);
+    clipped.solve(*settings.lighting, 0, frameTimes, progress);
+    clippedScattering_.reset();
+    clippedScattering_.emplace(std::move(clipped));
+  } else {
+    solver.solve(*settings.lighting, settings.scatteringCoarseness, frameTimes, progress);
+  }
   if (other) {
     scattering_.reset();
     scattering_.emplace(*std::move(other));
   }
   scatteringIsOld_ = false;
-  if (!settings.clip) return;
-  ScatteringSolver clipped = scattering_->clipped(*settings.clip, settings.scatteringCoarseness);
-  clipped.solve(*settings.lighting, 0, frameTimes, progress);
-  clippedScattering_.reset();
-  clippedScattering_.emplace(std::move(clipped));
 }
 
 void DeviceScene::prepareLights(const FrameSettings& settings, bool scalars, FrameConstants& constants, const Progress& progress) {

@@ -249,7 +249,8 @@ void marchLevel(inout Sums sums, inout float distanceSum, SampleRay sampleRay, i
   sums.distance = 0.0;
   const float before = sums.transmittance;
   if (sums.transmittance > frame.endTransmittance) march(sums, level, ray, slices, frame.endTransmittance, scalars);
-  if (kClips) sums.distance += ahead * (before - sums.transmittance);
+  if (kClips && !kProjected) sums.distance += ahead * (before - sums.transmittance);
+  if (kClips && kProjected) sums.distance += ahead * (frame.projection == kMaxIntensity ? float(sums.color.x > 0.0) : sums.color.z);
   distanceSum += ray.perSlice * sums.distance;
 }
 

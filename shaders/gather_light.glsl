@@ -145,7 +145,7 @@ float layersToClip(vec3 position, vec3 layer) {
 }
 
 const float kClipStep = float(1 << kBrickLevels);  // blocks
-const int kMaxClipSteps = 24;
+const int kMaxClipSteps = 4096;  // no way through the volumes of one device is longer
 
 // Whether the brick of the quad that is looked up at a place, in blocks, has blocks.
 bool isInBrick(LevelGeometry level, vec3 place) {
@@ -167,7 +167,7 @@ void passClipped(inout vec4 depths, LevelGeometry level, vec3 position, float ed
     end[kAxis] = float(level.count) - 0.5;
     end[kSideA] = float(level.dimensions.x) - 0.5;
     end[kSideB] = float(level.dimensions.y) - 0.5;
-    const bool clips = layers < way.w && all(greaterThan(place, vec3(-0.5))) && all(lessThan(place, end));
+    const bool clips = layers < way.w && (layers <= 0.0 || (all(greaterThan(place, vec3(-0.5))) && all(lessThan(place, end))));
     int steps = clips ? clamp(int(ceil(blocks / kClipStep)), 0, kMaxClipSteps) : 0;
     float step = 0.0;  // of the last move
     do {

@@ -44,8 +44,10 @@ vec2 scalarBetween(LevelGeometry level, vec2 position, int first, int second, fl
   [[unroll]] for (int i = 0; i < 2; ++i) {
     const int slice = i == 0 ? first : second;
     vec4 weights;
-    const vec4 scalars = scalarsOf(quadAt(level, position, clamp(slice, 0, level.count - 1), weights), weights);
-    const float share = slice >= 0 && slice < level.count ? i == 0 ? 1.0 - fraction : fraction : 0.0;
+    const bool isWithin = slice >= 0 && slice < level.count;  // the other one is, beside the volume's borders
+    const int there = clamp(isWithin ? slice : i == 0 ? second : first, 0, level.count - 1);
+    const vec4 scalars = scalarsOf(quadAt(level, position, there, weights), weights);
+    const float share = isWithin ? i == 0 ? 1.0 - fraction : fraction : 0.0;
     sum += share * vec2(dot(weights, scalars), sumOf(weights));
   }
   return vec2(max(sum.x / max(sum.y, 1e-20), 0.0), sum.y);

@@ -75,7 +75,7 @@ Outside outsideOf(LevelGeometry level, Ray ray, float slice, vec3 outwards) {
   vec4 weights;
   const int quad = quadAt(level, position, clamp(int(floor(slice + offset[kAxis] + 0.5)), 0, level.count - 1), weights);
   vec4 depths = depthsTowardsLights(quad, weights);
-  if (kClips) passClipped(depths, level, voxelPosition(ray, slice) + ray.edge * offset, ray.edge, kScalars ? 1.0 : 0.0);
+  if (kClips) passClipped(depths, level, voxelPosition(ray, slice) + ray.edge * offset, ray.edge, kScalars && ray.edge == 1.0 ? 1.0 : 0.0);
   return Outside(depths, ray.edge * offset);
 }
 

@@ -60,7 +60,12 @@ FrameSeries::FrameSeries(const RenderOptions& options, const Device& device, Run
 void FrameSeries::draw(std::span<const FrameJob> jobs) {
   progress_.start(jobs.size());
   report_.device = device_.description();
-  drawVolumes(jobs);
+  try {
+    drawVolumes(jobs);
+  } catch (...) {
+    writer_.finishAfterFailure();
+    throw;
+  }
   addTimes(report_.stages, writer_.times());
   addTimes(report_.stages, device_.pipelines().times());
   report_.devicePeak = device_.peakBytes();

@@ -25,6 +25,13 @@ void FrameWriter::finish() {
   writer_.finish();
 }
 
+void FrameWriter::finishAfterFailure() noexcept {
+  try {
+    finish();
+  } catch (...) {
+  }
+}
+
 void FrameWriter::printNames(const FrameJob& job) {
   progress_.erase();
   if (options_.messages.quiet || !options_.leads()) return;

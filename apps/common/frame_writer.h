@@ -27,6 +27,8 @@ class FrameWriter {
   void writeSums(const FixedSums& sums, const Scene& view, const FrameJob& job);
   /// Waits until all frames are written, and prints the names of their files.
   void finish();
+  /// The same where the next frame could not be drawn. What writing throws is not more than that.
+  void finishAfterFailure() noexcept;
   /// Prints the names of a frame's files, where this process prints.
   void printNames(const FrameJob& job);
   const std::vector<StageTime>& times() const { return writer_.times(); }

@@ -8,6 +8,7 @@
 #include "apps/view/window.h"
 #include "engine/image/display_pass.h"
 #include "engine/octree/volume_limits.h"
+#include "shaders/gather_interface.h"
 
 namespace freevoxels {
 
@@ -48,7 +49,10 @@ bool equalButClipping(const SceneDescription& a, const SceneDescription& b) {
 
 /// Whether an image of the same volume may be drawn with clipped rays (FrameSettings::clip).
 bool mayClipRays(const DrawnImage& drawn) {
-  return drawn.isWholeOnDevice && drawn.scene.added.empty() && drawn.request.scene.method.drawing() == Draw::Gather;
+  const std::optional<Lighting>& lighting = drawn.scene.lighting;
+  const bool lightsSamples =
+      !lighting || (lighting->lights.size() <= shader::kMaxSampleLights && lighting->attenuation != LightAttenuation::Table);
+  return drawn.isWholeOnDevice && drawn.scene.added.empty() && drawn.request.scene.method.drawing() == Draw::Gather && lightsSamples;
 }
 
 const char* nameOf(Purpose purpose) {
@@ -97,10 +101,14 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
     if (result.drawn && result.drawn->layers) layered_ = result.drawn;
     return false;
   }
+  if (&thread == clipping_.get() && !result.drawn) {  // another draft or the whole image says what is wrong, if it is
+    answered_ = std::max(answered_, result.number);
+    refuseClipping(asked_);
+    return false;
+  }
   if (&thread == clipping_.get()) {
-    clippable_.reset();
-    if (result.drawn) clippable_ = result.drawn->request.scene;
-    if (std::exchange(preparesClipping_, false)) return false;
+    clippable_ = result.drawn->request.scene;
+    if (result.number <= clippingAskedOf_) return false;
   }
   answered_ = std::max(answered_, result.number);
   if (&thread == &quick_) refines_ = false;
@@ -108,7 +116,8 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
     state.problem = result.problem;
     spdlog::debug("no image: {}", result.problem);
     failure = result.failure;
-    if (&thread == &whole_) failed_ = result.number;
+    if (&thread == &whole_) unclipped_.reset();
+    if (&thread == &whole_ && askedOfWhole_ == result.number) failed_ = result.number;
     return false;
   }
   state.problem.clear();
@@ -124,6 +133,7 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
     unclipped_.reset();
     const Scene& scene = result.drawn->scene;
     if (result.drawn->isWholeOnDevice && scene.added.empty() && scene.classification.isPost(*scene.volume)) classified_ = request.scene;
+    if (clipping_ && !result.drawn->isWholeOnDevice) refuseClipping(request.scene);
     if (!request.scene.input.isClipped() && mayClipRays(*result.drawn)) unclipped_ = withDensityScale(request.scene, scene);
   }
   const bool isWhole = request.purpose == Purpose::Whole;
@@ -139,6 +149,7 @@ bool ImageDirector::keep(ViewState& state, RenderThread& thread, const RenderThr
 
 bool ImageDirector::take(ViewState& state, std::exception_ptr& failure) {
   bool isNew = std::exchange(isMixed_, false);
+  std::erase_if(ending_, [](const std::unique_ptr<RenderThread>& thread) { return !thread->isBusy(); });
   for (RenderThread* const thread : {&quick_, &whole_, clipping_.get()}) {
     if (thread == nullptr) continue;
     const std::optional<RenderThread::Result> result = thread->take();
@@ -173,15 +184,44 @@ bool ImageDirector::isReadyToClip(const SceneDescription& scene) const {
 }
 
 /// The thread that has the volume ready to be drawn with clipped rays, or null.
-RenderThread* ImageDirector::clippingThread(const SceneDescription& scene) {
-  if (isReadyToClip(scene)) return clipping_.get();
-  return unclipped_ && equalButClipping(*unclipped_, scene) ? &whole_ : nullptr;
+RenderThread* ImageDirector::clippingThread(const ViewState& state) {
+  if (!state.scene.input.isClipped() || state.diagnosis.shown != Shown::Image || state.comparedMethod()) return nullptr;
+  if (isReadyToClip(state.scene)) return clipping_.get();
+  return unclipped_ && equalButClipping(*unclipped_, state.scene) ? &whole_ : nullptr;
 }
 
 /// Whether to make ready, while nothing else is to be done, what a change of clip box or plane is drawn of.
 bool ImageDirector::wantsClipping(const ViewState& state) const {
-  return clippingAskedOf_ != lastRequest_ && state.scene.input.isClipped() && isComplete(state) && state.diagnosis.shown == Shown::Image &&
-         !wholeIsQuick_ && !wholeOnly_ && mayClipRays(*state.whole) && !isReadyToClip(state.scene);
+  if (clippingAskedOf_ == lastRequest_ || !state.scene.input.isClipped() || !isComplete(state) || wholeIsQuick_ || wholeOnly_) return false;
+  if (state.diagnosis.shown != Shown::Image || state.comparedMethod() || !mayClipRays(*state.whole)) return false;
+  const SceneDescription scene = withDensityScale(state.scene, state.whole->scene);
+  return !isReadyToClip(scene) && !(notClippable_ && equalButClipping(*notClippable_, state.scene));
+}
+
+void ImageDirector::prepareClipping(const ViewState& state) {
+  clippingAskedOf_ = lastRequest_;
+  clippable_.reset();
+  if (!clipping_) clipping_ = std::make_unique<RenderThread>(device_, volumes_, Window::wake);
+  ImageRequest prepared = request(state, Purpose::Clip, kAllVoxels, movePace_.quality());
+  const glm::ivec2 size = prepared.scene.camera.size;
+  prepared.scene = withDensityScale(state.scene, state.whole->scene);
+  prepared.scene.camera.size = size;
+  clipping_->ask(std::move(prepared));
+}
+
+/// Frees the volume that is kept for clipping, when the thread has ended.
+void ImageDirector::giveUpClipping() {
+  clippable_.reset();
+  if (!clipping_) return;
+  clipping_->abandon();
+  clipping_->end();
+  ending_.push_back(std::move(clipping_));
+}
+
+/// There is too little memory for a second volume.
+void ImageDirector::refuseClipping(const SceneDescription& scene) {
+  notClippable_ = scene;
+  giveUpClipping();
 }
 
 void ImageDirector::askOfChange(const ViewState& state) {
@@ -194,7 +234,8 @@ void ImageDirector::askOfChange(const ViewState& state) {
   const bool showsImage = state.diagnosis.shown == Shown::Image;
   const bool moves = !state.changed && wholeRevision_ == revision_ && showsImage;
   const bool classifies = state.changed && classified_ && showsImage && equalButFunction(*classified_, state.scene);
-  RenderThread* const clipping = !moves && showsImage && state.scene.input.isClipped() ? clippingThread(state.scene) : nullptr;
+  if (drawsWhole_ && asked_.input.isClipped()) unclipped_.reset();  // which the image has begun to give up
+  RenderThread* const clipping = moves ? nullptr : clippingThread(state);
   const Purpose purpose = moves ? Purpose::Move : classifies ? Purpose::Classify : clipping != nullptr ? Purpose::Clip : Purpose::Edit;
   // A whole image in full size is given up for what is wanted now.
   if (purpose == Purpose::Edit || drawsWhole_ || drawsLayers_) whole_.abandon();
@@ -203,7 +244,6 @@ void ImageDirector::askOfChange(const ViewState& state) {
   const AdaptiveResolution& pace = purpose == Purpose::Edit ? editPace_ : movePace_;
   askedVoxels_ = state.camera || moves ? pace.voxelsAlongEdge() : kFirstVoxels;
   RenderThread& thread = purpose == Purpose::Clip ? *clipping : askedVoxels_ == kAllVoxels ? whole_ : quick_;
-  if (purpose == Purpose::Clip) preparesClipping_ = false;
   thread.ask(request(state, purpose, askedVoxels_, pace.quality()));
 }
 
@@ -266,6 +306,9 @@ void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
   const Clock::time_point now = Clock::now();
   if (isPending(state)) {
     if (state.changed) ++revision_, noteEdit(state.scene);
+    const SceneDescription& scene = state.scene;
+    if (!scene.input.isClipped() || scene.input.volume != asked_.input.volume) giveUpClipping();
+    if (clipping_ && !equalButClipping(asked_, scene)) clipping_->abandon();
     lastChange_ = now;
     ++lastRequest_;
     refines_ = false;
@@ -281,14 +324,7 @@ void ImageDirector::ask(ViewState& state, glm::ivec2 pixels, bool moves) {
     layers.layers = edited_;
     whole_.ask(std::move(layers));
   } else if (!moves && wantsClipping(state)) {
-    clippingAskedOf_ = lastRequest_;
-    preparesClipping_ = true;
-    if (!clipping_) clipping_ = std::make_unique<RenderThread>(device_, volumes_, Window::wake);
-    clipping_->ask(request(state, Purpose::Clip, kAllVoxels, movePace_.quality()));
-  }
-  if (!state.scene.input.isClipped()) {
-    clipping_.reset();
-    clippable_.reset();
+    prepareClipping(state);
   }
 }
 
@@ -300,6 +336,11 @@ void ImageDirector::end() {
   quick_.end();
   whole_.end();
   if (clipping_) clipping_->end();
+}
+
+bool ImageDirector::isBusy() const {
+  return quick_.isBusy() || whole_.isBusy() || (clipping_ && clipping_->isBusy()) ||
+         std::ranges::any_of(ending_, [](const std::unique_ptr<RenderThread>& thread) { return thread->isBusy(); });
 }
 
 std::optional<std::pair<std::string, double>> ImageDirector::activity() const {

@@ -4,6 +4,8 @@
 #include <chrono>
 #include <exception>
 #include <memory>
+#include <optional>
+#include <vector>
 
 #include "apps/view/image_pace.h"
 #include "apps/view/render_thread.h"
@@ -42,14 +44,17 @@ class ImageDirector {
 
   /// Abandons everything, for good, without waiting for that.
   void end();
-  bool isBusy() const { return quick_.isBusy() || whole_.isBusy() || (clipping_ && clipping_->isBusy()); }
+  bool isBusy() const;
 
  private:
   static bool isPending(const ViewState& state) { return state.changed || state.moved; }
   void askOfChange(const ViewState& state);
   void refine(const ViewState& state);
-  RenderThread* clippingThread(const SceneDescription& scene);
+  RenderThread* clippingThread(const ViewState& state);
   bool wantsClipping(const ViewState& state) const;
+  void prepareClipping(const ViewState& state);
+  void giveUpClipping();
+  void refuseClipping(const SceneDescription& scene);
   void noteEdit(const SceneDescription& scene);
   bool mix(ViewState& state);
   bool wantsLayers(const ViewState& state) const;
@@ -77,10 +82,12 @@ class ImageDirector {
   SceneDescription asked_;                          ///< of the last request
   /// Of the last image of all voxels, where these are classified by a transfer function after interpolation.
   std::optional<SceneDescription> classified_;
-  /// Scenes for which `whole_` and `clipping_` have the whole volume ready, to be drawn with clipped rays.
-  std::optional<SceneDescription> unclipped_, clippable_;
-  bool preparesClipping_ = false;                   ///< whether `clipping_` draws an image that is not shown, to be ready
-  std::uint64_t clippingAskedOf_ = 0;               ///< the request for which that was asked
+  /// Of the last image of all voxels, if nothing was clipped: `whole_` can draw it with clipped rays, until it begins one that is clipped.
+  std::optional<SceneDescription> unclipped_;
+  std::optional<SceneDescription> clippable_;          ///< for which `clipping_` is ready
+  std::optional<SceneDescription> notClippable_;       ///< which does not fit on the device twice
+  std::uint64_t clippingAskedOf_ = 0;                  ///< up to this request `clipping_` only gets ready, and its images are not shown
+  std::vector<std::unique_ptr<RenderThread>> ending_;  ///< given up, until they are no longer busy
   std::optional<Colors> edited_;                    ///< what was edited last, if it is nothing but colours
   bool drawsLayers_ = false, isMixed_ = false;      ///< isMixed_: ViewState::latest was mixed of layers, and nobody knows yet
   std::uint64_t layersAskedOf_ = 0;                 ///< the request of whose image layers were asked for

@@ -34,8 +34,8 @@ void openScene(ViewState& state, const std::string& file) {
   SceneDescription scene = readScene(file);
   const std::optional<Sequence> sequence = takeVolume(scene);
   scene.camera.size = state.scene.camera.size;
-  state.show(scene, sequence);
   state.toneMapIsAutomatic = false;
+  state.show(scene, sequence);
 }
 
 bool isTransferFunction(const std::string& file) {

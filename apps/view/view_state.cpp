@@ -14,7 +14,10 @@ bool exceedsDefaultLights(const LightingDescription& lighting) {
     const glm::dvec3& color = given.light.color;
     return !given.light.atInfinity || given.light.intensity * std::max({color.r, color.g, color.b}) > 1.01 * kDefaultIrradiance;
   };
-  return lighting.environment || lighting.lights.size() > 1 || std::ranges::any_of(lighting.lights, isBright);
+  constexpr double kMostAmbient = 0.5;
+  const glm::dvec3 ambient = lighting.ambient.value_or(glm::dvec3(0.0));
+  return std::max({ambient.r, ambient.g, ambient.b}) > kMostAmbient || lighting.environment || lighting.lights.size() > 1 ||
+         std::ranges::any_of(lighting.lights, isBright);
 }
 
 /// Whether pixels may be brighter than 1, by lights, light from around or emission. Channels send out the colours of their values. `drawn`

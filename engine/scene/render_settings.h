@@ -74,9 +74,10 @@ struct FrameSettings {
   int scatteringCoarseness = 0;
   /// Whether light may be that of the volume's classification before (Renderer::reclassify), for drafts.
   bool allowsOldLight = false;
-  /// If given, rays are marched only there, for drafts of a volume that will be clipped: nothing is made anew for it. Lights shine past
-  /// what is clipped, up to optical depths of 32, and scattered light is solved with the tolerance of drafts. Only gathered, of a single
-  /// volume that is on the device as a whole.
+  /// If given, rays are marched only there, for drafts of a volume that will be clipped: nothing is made anew for it. Lights that are
+  /// evaluated at samples (GatherVolume::lightsSamples) shine past what is clipped, up to optical depths of 32; others have the shadows of
+  /// the whole volume. Scattered light is solved with the tolerance of drafts. Only gathered, of a single volume that is on the device as a
+  /// whole.
   std::optional<RayClip> clip = std::nullopt;
   /// Where rays end, of the image's size; only gathered. Null if there is none.
   std::shared_ptr<const Holdout> holdout = nullptr;

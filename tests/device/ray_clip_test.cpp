@@ -2,6 +2,7 @@
 
 #include <fmt/format.h>
 
+#include <algorithm>
 #include <cmath>
 #include <optional>
 #include <vector>
@@ -108,7 +109,44 @@ TEST_F(RayClipTest, ABoxAroundTheVolumeChangesNothing) {
   }
 }
 
-/// Half of a ball of fog, from the side of the cut and from behind, in a volume of other edges along each axis.
+/// More than 24 bricks of air between them.
+TEST_F(RayClipTest, AWallStaysInTheShadowOfAScreenFarAway) {
+  const glm::ivec3 dimensions(290, 24, 24);
+  const Volume room = makeVolume(dimensions, cubeTransform(dimensions), [](int x, int y, int z) {
+    const bool isInside = std::min(y, z) > 3 && std::max(y, z) < 20;
+    return isInside && ((x > 4 && x < 10 && y < 12) || (x > 275 && x < 285)) ? 1.0 : double(kInactiveVoxel);
+  });
+  Classification solid;
+  solid.transferFunction = {.opacity = {{0.0f, 0.0f}, {1.0f, 0.9f}}, .color = {{0.0f, glm::vec3(0.8f)}}, .unitDistance = 0.004};
+  FrameSettings settings = lit({.size = {60, 60}, .lod = 0.0f}, {.place = {-1.0, 0.0, 0.0}}, 0.0);
+  const Camera view{.position = {-0.2, 0.3, 0.1}, .lookAt = {0.48, 0.0, 0.0}, .verticalFov = 10.0};
+  Renderer renderer(device(), room, solid, {});
+  const Image whole = renderer.render(view, settings);
+  settings.clip = RayClip{.low = glm::dvec3(-0.5), .high = glm::dvec3(dimensions) - 0.5};
+  const Image clipped = renderer.render(view, settings);
+  EXPECT_GT(whole.pixels[30 * 60 + 30].a, 0.9f) << "the wall is seen";
+  EXPECT_GT(psnr(clipped, whole), 40.0);
+  settings.clip->low.x = 20.0;  // without the screen
+  EXPECT_LT(psnr(renderer.render(view, settings), whole), 30.0);
+}
+
+TEST_F(RayClipTest, DistancesOfAProjectionCountFromTheEye) {
+  FrameSettings projected{.size = {40, 40}, .lod = 0.0f, .depth = true};
+  for (const IntensityProjection projection : {IntensityProjection::Maximum, IntensityProjection::Average}) {
+    projected.gather().projection = projection;
+    Renderer renderer(device(), volume, function, {});
+    projected.clip.reset();
+    const Image whole = renderer.render(camera(), projected);
+    projected.clip = RayClip{.low = glm::dvec3(-0.5), .high = glm::dvec3(volume.dimensions) - 0.5};
+    const Image clipped = renderer.render(camera(), projected);
+    for (std::size_t i = 0; i < whole.depth.size(); ++i) {
+      if (whole.pixels[i].a < 0.5f) continue;
+      ASSERT_NEAR(clipped.depth[i], whole.depth[i], 0.05 * whole.depth[i]) << i;
+    }
+  }
+}
+
+/// Half of a box of fog, from the side of the cut and from behind, in a volume of other edges along each axis.
 TEST_F(RayClipTest, HasTheOpacityOfWhatIsLeftByBeerLambert) {
   const glm::ivec3 dimensions(64, 40, 24);
   const Volume box = makeVolume(dimensions, cubeTransform(dimensions), [](int, int, int) { return 1.0; });

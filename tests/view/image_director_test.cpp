@@ -120,6 +120,15 @@ TEST_F(ImageDirectorTest, PlanesAndBoxesAreMovedWithAllVoxels) {
     ASSERT_TRUE(askUntil(director, state, [&] { return director.isReadyToClip(state.scene); }));
     EXPECT_EQ(state.latest, latest);
   }
+  state.comparison = 1;
+  EXPECT_NE(clip(0.06).front().purpose, Purpose::Clip) << "the other method may not clip rays";
+  state.comparison = 0;
+  EXPECT_EQ(clip(0.07).front().purpose, Purpose::Clip) << "the whole volume was kept";
+  state.scene.classification.transferFunction = "layers";
+  state.changed = true;
+  EXPECT_NE(follow().front().purpose, Purpose::Clip);
+  ASSERT_TRUE(askUntil(director, state, [&] { return director.isReadyToClip(state.scene); }));
+  EXPECT_EQ(clip(0.05).front().purpose, Purpose::Clip) << "it was made ready again";
   ImageDirector another(device(), true);
   ViewState same = state;
   same.changed = true;
