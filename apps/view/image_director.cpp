@@ -203,9 +203,7 @@ void ImageDirector::prepareClipping(const ViewState& state) {
   clippable_.reset();
   if (!clipping_) clipping_ = std::make_unique<RenderThread>(device_, volumes_, Window::wake);
   ImageRequest prepared = request(state, Purpose::Clip, kAllVoxels, movePace_.quality());
-  const glm::ivec2 size = prepared.scene.camera.size;
-  prepared.scene = withDensityScale(state.scene, state.whole->scene);
-  prepared.scene.camera.size = size;
+  prepared.scene = withDensityScale(std::move(prepared.scene), state.whole->scene);
   clipping_->ask(std::move(prepared));
 }
 

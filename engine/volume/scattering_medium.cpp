@@ -213,17 +213,14 @@ ScatteringMedium ScatteringMedium::coarser() const {
   result.grid_.edge = 2 * grid_.edge;
   result.cells_.assign(result.grid_.count(), {});
   result.direct_.clear();
-  glm::ivec3 cell;
-  for (cell.z = 0; cell.z < grid_.cells.z; ++cell.z)
-    for (cell.y = 0; cell.y < grid_.cells.y; ++cell.y)
-      for (cell.x = 0; cell.x < grid_.cells.x; ++cell.x) {
-        const Cell& own = cells_[grid_.index(cell)];
-        Cell& sum = result.cells_[result.grid_.index(cell / 2)];
-        sum.extinction += own.extinction / 8.0;
-        sum.scattering += own.scattering / 8.0;
-        sum.emission += own.emission / 8.0;
-        result.direct_.push_back(own.extinction);
-      }
+  forEachCell(grid_, [&](glm::ivec3 cell, std::size_t i) {
+    const Cell& own = cells_[i];
+    Cell& sum = result.cells_[result.grid_.index(cell / 2)];
+    sum.extinction += own.extinction / 8.0;
+    sum.scattering += own.scattering / 8.0;
+    sum.emission += own.emission / 8.0;
+    result.direct_.push_back(own.extinction);
+  });
   return result;
 }
 
@@ -245,19 +242,16 @@ std::vector<double> ScatteringMedium::surfaceShares() const {
     return within ? cells_[grid_.index(cell)].extinction : 0.0;
   };
   std::vector<double> shares;
-  glm::ivec3 cell;
-  for (cell.z = 0; cell.z < grid_.cells.z; ++cell.z)
-    for (cell.y = 0; cell.y < grid_.cells.y; ++cell.y)
-      for (cell.x = 0; cell.x < grid_.cells.x; ++cell.x) {
-        glm::dvec3 gradient;
-        for (int axis = 0; axis < 3; ++axis) {
-          glm::ivec3 step(0);
-          step[axis] = 1;
-          gradient[axis] = 0.5 * (extinctionAt(cell + step) - extinctionAt(cell - step));
-        }
-        const double own = extinctionAt(cell);
-        shares.push_back(own > 0.0 ? surfaceShare(glm::length(gradient) / own) : 0.0);
-      }
+  forEachCell(grid_, [&](glm::ivec3 cell, std::size_t i) {
+    glm::dvec3 gradient;
+    for (int axis = 0; axis < 3; ++axis) {
+      glm::ivec3 step(0);
+      step[axis] = 1;
+      gradient[axis] = 0.5 * (extinctionAt(cell + step) - extinctionAt(cell - step));
+    }
+    const double own = cells_[i].extinction;
+    shares.push_back(own > 0.0 ? surfaceShare(glm::length(gradient) / own) : 0.0);
+  });
   return shares;
 }
 
