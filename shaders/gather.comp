@@ -324,11 +324,15 @@ void main() {
   // Scalars are marched apart from the levels of blocks behind them, so that neither loop has the code of the other: lavapipe executes
   // branches that no lane takes.
   if (kScalars) {
-    if (frame.finest == 0) marchLevel(sums, distanceSum, sampleRay, 0, true);
+    if (kCube || frame.finest == 0) marchLevel(sums, distanceSum, sampleRay, 0, true);
   }
-  if (!kScalars || kLevels)
+  // A cube has one level. With the loop, of which it inlines the bounds, lavapipe would compile the shader anew for each cube.
+  if (kCube && !kScalars) {
+    marchLevel(sums, distanceSum, sampleRay, 0, false);
+  } else if (!kCube && (!kScalars || kLevels)) {
     for (int level = max(frame.finest, kScalars ? 1 : 0); level <= frame.coarsest; ++level)
       marchLevel(sums, distanceSum, sampleRay, level, false);
+  }
   if (kMerged) {
     closeAllSlabs();
     if (kComposites) storeSums(sampleIndex, mergedColor, mergedTransmittance, mergedDistance);
