@@ -35,17 +35,15 @@ vec3 surfaceLight(SegmentLight lit, int light, vec3 toLight, vec3 depth, vec3 to
 // within the segment. `depth` is the segment's optical depth for light.
 vec3 lightOf(int light, SegmentLight lit, vec3 depth, vec3 toEye) {
   const SampleLight source = frame.lights[light];
-  vec3 toLight = source.positionOrDirection;
-  float distance2 = 1.0;
-  if (source.atInfinity == 0) {
-    toLight = frame.indexToWorld * (source.positionOrDirection - lit.position);
-    distance2 = max(dot(toLight, toLight), frame.nearestLight2);
-    toLight *= inversesqrt(max(dot(toLight, toLight), 1e-30));
-  }
+  const bool atInfinity = source.atInfinity != 0;
+  const vec3 apart = frame.indexToWorld * (source.positionOrDirection - lit.position);
+  const float apart2 = dot(apart, apart);
+  const vec3 toLight = mix(apart * inversesqrt(max(apart2, 1e-30)), source.positionOrDirection, bvec3(atInfinity));
+  const float distance2 = mix(max(apart2, frame.nearestLight2), 1.0, atInfinity);
   const float begin = lit.begin[light], change = lit.change[light];
   // A stored depth at the end of its range stands for any larger one; times a tint below 1 it would let light through.
   if (kTinted && begin + max(change, 0.0) >= kMaxLightDepth) return vec3(0.0);
-  float phase = frame.phaseG == 0.0 ? 1.0 / (4.0 * kPi) : phaseFunction(frame.phaseG, -toLight, toEye);
+  float phase = mix(phaseFunction(frame.phaseG, -toLight, toEye), 1.0 / (4.0 * kPi), frame.phaseG == 0.0);
   if (kSurfaces) phase *= 1.0 - lit.surface;
   vec3 sum;
   if (kTinted)
@@ -124,10 +122,9 @@ vec4 depthsTowardsLights(int quad, vec4 weights) {
 // The way from a position in index space to a light: a vector whose longest component is a voxel, and how many times its length the light is
 // away.
 vec4 layerTowards(int light, vec3 position) {
-  if (frame.lights[light].atInfinity != 0) return vec4(frame.lights[light].across, 1e9);
   const vec3 toLight = frame.lights[light].positionOrDirection - position;
   const float layers = max(max(abs(toLight.x), max(abs(toLight.y), abs(toLight.z))), 1e-6);
-  return vec4(toLight / layers, layers);
+  return mix(vec4(toLight / layers, layers), vec4(frame.lights[light].across, 1e9), bvec4(frame.lights[light].atInfinity != 0));
 }
 
 // With kClips: after how many layers the way from a position leaves the part of the volume that is drawn; 0 or less where the position is
