@@ -16,12 +16,14 @@ layout(constant_id = 0) const int kAxis = 2;
 layout(constant_id = 1) const bool kExtra = false;
 layout(constant_id = 2) const bool kColored = true;
 layout(constant_id = 3) const bool kCodes = false;  // codes of 16 bits in place of extinctions: of scalars, or depths towards a light
+layout(constant_id = 4) const bool kShaded = true;  // whether extinctions are those of shade_blocks.comp, and not those of the volume
 
 layout(local_size_x = kBrickQuadsThreads) in;
 layout(scalar, push_constant) uniform Push { BrickQuadsPush push; };
 layout(binding = 0) uniform utextureBuffer brickCells;  // of each brick, in blocks: x, y, z of its first one
 layout(binding = 1) uniform utextureBuffer occupancy;   // OccupancyWord
 layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Words { uint values[]; };
+layout(buffer_reference, scalar, buffer_reference_align = 4) readonly buffer Extinctions { float values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) readonly buffer Sources { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 8) writeonly buffer MediumQuads { uvec2 values[]; };
 layout(buffer_reference, scalar, buffer_reference_align = 16) writeonly buffer SourceQuads { uvec4 values[]; };
@@ -71,12 +73,55 @@ Pair pairAt(ivec3 first, CodeRow row) {
     const int bit = address & 31;
     const bool occupied = inside && (word.x >> bit & 1u) != 0;
     const uint rank = occupied ? push.level.firstRank + rankIn(word, bit) : 0;
+    if (!kCodes && !kShaded) {
+      const float stored = min(push.extinctionScale * Extinctions(push.sources).values[rank], kMaxStored);
+      pair.medium[i] = occupied ? packHalf2x16(vec2(stored, 0.0)) : 0;
+      continue;
+    }
     const uvec2 source = Sources(push.sources).values[rank];
     if (!kCodes) pair.medium[i] = occupied ? source.y : 0;
     pair.source[i] = occupied ? source.x : 0;
     if (kExtra) pair.extra[i] = occupied ? Words(push.extras).values[rank] : 0;
   }
   return pair;
+}
+
+// Blocks of a row along x, from a first one to the next brick's first one, at successive addresses.
+struct BlockRow {
+  uint occupied;  // a bit for each block
+  uint next;      // rank of the next occupied block
+};
+
+BlockRow blockRowFrom(ivec3 cell) {
+  const int inside = any(greaterThanEqual(cell, push.level.dimensions)) ? 0 : min(push.level.dimensions.x - cell.x, kGatherBrickEdge + 1);
+  const int address = inside > 0 ? int(blockAddress(push.level, cell)) : 0, bit = address & 31, last = address + max(inside - 1, 0);
+  const uvec2 word = texelFetch(occupancy, address >> 5).xy;
+  const uint beyond = bit == 0 ? 0 : texelFetch(occupancy, last >> 5).x << (32 - bit);
+  return BlockRow(bitfieldExtract(word.x >> bit | beyond, 0, inside), push.level.firstRank + rankIn(word, bit));
+}
+
+uint nextExtinction(inout BlockRow row, int i) {
+  const bool occupied = (row.occupied >> i & 1u) != 0;
+  const float stored = push.extinctionScale * Extinctions(push.sources).values[occupied ? row.next : 0];
+  row.next += occupied ? 1 : 0;
+  return occupied ? packHalf2x16(vec2(min(stored, kMaxStored), 0.0)) : 0;
+}
+
+// The quads of a row along x of extinctions alone.
+void storeExtinctionQuads(ivec3 cell, uint quad) {
+  BlockRow rows[2];
+  uvec2 medium;
+  [[unroll]] for (int i = 0; i < 2; ++i) {
+    rows[i] = blockRowFrom(cell);
+    medium[i] = nextExtinction(rows[i], 0);
+    ++cell[kSideB];
+  }
+  [[unroll]] for (int k = 0; k < kGatherBrickEdge; ++k) {
+    uvec2 next;
+    [[unroll]] for (int i = 0; i < 2; ++i) next[i] = nextExtinction(rows[i], k + 1);
+    MediumQuads(push.medium).values[quad + k * kGatherBrickEdge] = medium | next << 16;
+    medium = next;
+  }
 }
 
 // The quads of a row along x: their rows of two codes are words, or the ends of two words.
@@ -118,6 +163,10 @@ void main() {
   if (kCodes) codes = codeRowFrom(cell);
   if (kCodes && !kColored && kSideA == 0) {
     storeCodeQuads(cell, codes, quad);
+    return;
+  }
+  if (!kCodes && !kShaded && kSideA == 0) {
+    storeExtinctionQuads(cell, quad);
     return;
   }
   Pair pair = pairAt(cell, codes);

@@ -10,6 +10,7 @@ namespace freevoxels::shader {
 
 FV_CONSTANT int kGatherTile = 8;          // samples along the edge of a workgroup of the passes over the lattice
 FV_CONSTANT int kShadeThreads = 64;      // of a workgroup of shade_blocks.comp
+FV_CONSTANT float kMaxStored = 65280.0f;  // largest stored extinction, a half, and packed light
 // The gather reads blocks of all levels in bricks of 8^3.
 FV_CONSTANT int kGatherBrickEdge = 1 << kBrickLevels;
 FV_CONSTANT int kGatherBrickBlocks = kGatherBrickEdge * kGatherBrickEdge * kGatherBrickEdge;
@@ -291,7 +292,8 @@ struct BrickQuadsPush {
   uint count;        // of bricks
   uint firstQuad;    // index of the first quad
   uvec2 medium, source, extra;  // device addresses of quads
-  uvec2 sources, extras;        // device addresses of the output of shade_blocks.comp, by rank
+  uvec2 sources, extras;        // device addresses of the output of shade_blocks.comp, or of the volume's extinctions, by rank
+  float extinctionScale;        // factor from the volume's extinctions to stored ones
   CodeBricks codes;
 };
 

@@ -14,7 +14,6 @@ layout(local_size_x = kShadeThreads) in;
 layout(scalar, push_constant) uniform Push { ShadePush push; };
 
 const float kMinLight = 1e-4;  // smaller light is stored as this
-const float kMaxStored = 65280.0;  // largest value of halves and of packed light
 
 ScatteredLight scatteredBy(Block block, float sigma, uint rank) {
   if (kAnyView) return scatteredLight(block, sigma, rank, vec3(0.0), sigma * push.meanLayer * float(block.edge));

@@ -40,6 +40,11 @@ bool dependsOnView(const Lighting& lighting) {
   return lighting.phaseG != 0.0 || lighting.surface > 0.0;
 }
 
+/// The factor from extinctions to stored ones.
+float extinctionScale(const DeviceVolume& volume) {
+  return float(kStoredDepth * volume.voxelSize);
+}
+
 /// World length of a voxel's layer along its major axis, averaged over all directions: about 1.2 voxel edges.
 float meanLayer(const DeviceVolume& volume) {
   return float(1.2 * volume.voxelSize);
@@ -58,7 +63,6 @@ GatherVolume::GatherVolume(const Device& device, const Classification& classific
   include(met, times);
 }
 
-/// Scalars without light need no source terms for voxels.
 void GatherVolume::makeSources() {
   const std::uint64_t blocks = built_.volume.storedBlocks() + 1;  // so that no buffer is empty
   if (shadesLevel(0) || wantedLevels_ != 1u) {
@@ -82,7 +86,7 @@ void GatherVolume::shade(Commands& commands, const Shading& shading, int level) 
                                .extra = addressWords(extras_.address()),
                                .firstRank = volume.firstRank(level),
                                .count = count,
-                               .extinctionScale = float(kStoredDepth * volume.voxelSize),
+                               .extinctionScale = extinctionScale(volume),
                                .sourceScale = float((lightOnly ? 1.0 : kStoredDepth * volume.voxelSize) / sourceUnit_),
                                .meanLayer = meanLayer(volume),
                                .lightOnly = lightOnly ? 1 : 0,
@@ -97,7 +101,7 @@ bool GatherVolume::hasColors() const {
 }
 
 bool GatherVolume::shadesLevel(int level) const {
-  return lit_ || level > 0 || !hasScalars();
+  return lit_ || level > 0 || (!hasScalars() && (hasColors() || hasEmissionApart()));
 }
 
 bool GatherVolume::hasScalars() const {
@@ -209,7 +213,9 @@ void GatherVolume::recordBricks(Commands& commands, int axis, const GatherBricks
   const DeviceVolume& volume = built_.volume;
   const Quads& quads = quads_[std::size_t(axis)];
   const bool extra = (hasTowards() && colored) || (hasEmissionApart() && !codes);
-  const Pipeline pass = makeComputePipeline(device_, shaders::brick_quads, {std::uint32_t(axis), extra, colored, codes.has_value()});
+  const bool isShaded = codes.has_value() || shadesLevel(range.level);
+  const Pipeline pass =
+      makeComputePipeline(device_, shaders::brick_quads, {std::uint32_t(axis), extra, colored, codes.has_value(), isShaded});
   const std::array<Binding, 2> bindings{&bricks_.placeTexels(), &volume.occupancyTexels};
   for (std::uint32_t next = range.first; next < range.end;) {
     const std::uint32_t piece = next / bricksPerPiece_;
@@ -221,8 +227,9 @@ void GatherVolume::recordBricks(Commands& commands, int axis, const GatherBricks
                                       .medium = addressWords(medium.address(piece)),
                                       .source = addressWords(quads.source.address(piece)),
                                       .extra = addressWords(quads.extra.address(piece)),
-                                      .sources = addressWords(sources_.address()),
+                                      .sources = addressWords(isShaded ? sources_.address() : volume.extinction.address()),
                                       .extras = addressWords(extras_.address()),
+                                      .extinctionScale = extinctionScale(volume),
                                       .codes = codes.value_or(shader::CodeBricks())};
     commands.dispatchLinear(pass, bindings, push, std::uint64_t(bricks) * shader::kBrickQuadsThreads);
     next += bricks;
@@ -260,6 +267,24 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = bricks_.levels()[std::size_t(number)];
 }
 
+/// By rank: what shade_blocks.comp stores; of levels that are not shaded extinctions alone, as brick_quads.comp packs them.
+std::vector<glm::uvec2> GatherVolume::downloadSources(int level, std::size_t count) const {
+  const DeviceVolume& volume = built_.volume;
+  std::vector<glm::uvec2> stored(count);
+  if (stored.empty()) return stored;
+  if (shadesLevel(level)) {
+    download(device_, sources_, std::as_writable_bytes(std::span(stored)), volume.firstRank(level) * sizeof(glm::uvec2));
+    return stored;
+  }
+  std::vector<float> extinctions(count);
+  download(device_, volume.extinction, std::as_writable_bytes(std::span(extinctions)), volume.firstRank(level) * sizeof(float));
+  std::ranges::transform(extinctions, stored.begin(), [&](float extinction) {
+    const float scaled = std::min(extinctionScale(volume) * extinction, shader::kMaxStored);
+    return glm::uvec2(0, glm::packHalf2x16(glm::vec2(scaled, 0.0f)));
+  });
+  return stored;
+}
+
 std::vector<GatherBlocks> GatherVolume::downloadBlocks() const {
   const DeviceVolume& volume = built_.volume;
   std::vector<GatherBlocks> levels(std::size_t(volume.hierarchy.top()) + 1);
@@ -267,10 +292,8 @@ std::vector<GatherBlocks> GatherVolume::downloadBlocks() const {
     if ((wantedLevels_ >> level & 1u) == 0 || (level == 0 && hasScalars())) continue;
     const GridLayout& grid = volume.hierarchy.levels[std::size_t(level)];
     const std::vector<std::uint32_t> indices = downloadStored(device_, volume, level);
-    std::vector<glm::uvec2> stored(indices.size());
+    std::vector<glm::uvec2> stored = downloadSources(level, indices.size());
     std::vector<std::uint32_t> emission(hasEmissionApart() ? indices.size() : 0);
-    if (!stored.empty())
-      download(device_, sources_, std::as_writable_bytes(std::span(stored)), volume.firstRank(level) * sizeof(glm::uvec2));
     if (!emission.empty())
       download(device_, extras_, std::as_writable_bytes(std::span(emission)), volume.firstRank(level) * sizeof(std::uint32_t));
     const double perWorldUnit = 1.0 / (kStoredDepth * volume.voxelSize);
