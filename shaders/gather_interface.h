@@ -116,6 +116,11 @@ struct SampleListHead {
   uint count;
 };
 
+// gather_resample.frag
+struct ResamplePush {
+  int firstRow;  // of the lattice, in the image of rows
+};
+
 // Which samples of the lattice a dispatch of gather.comp marches.
 struct SamplesPush {
   uvec2 list;        // device address of the list that is marched if `step` is 0

@@ -29,7 +29,6 @@
 #include "embedded/gather_projected_cube.h"
 #include "embedded/gather_projected_whole.h"
 #include "embedded/gather_refine.h"
-#include "embedded/gather_resample.h"
 #include "embedded/gather_roughness.h"
 #include "embedded/gather_stencil.h"
 #include "engine/core/error.h"
@@ -75,9 +74,9 @@ std::uint64_t latticeSize(const shader::GatherFrame& frame) {
 GatherPass::GatherPass(const Device& device)
     : device_(device),
       frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
-      noDistance_(device, glm::ivec2(1), kTargetScalarFormat, "no distance"),
       noLight_(device, sizeof(glm::vec4), MemoryUse::Device, "no scattered light", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
-      noLightTexels_(device, noLight_) {}
+      noLightTexels_(device, noLight_),
+      image_(device) {}
 
 void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Rays rays) {
   for (int axis = 0; axis < 3; ++axis)
@@ -273,19 +272,8 @@ void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& fr
 }
 
 void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
-  const bool withDistance = targets.distance.exists();
   const Sums& samples = scalars ? gathered_ : smoothed_;
-  const auto taps = std::uint32_t(frame.pitch >= 1.0f ? shader::kSparseResampleTaps : shader::kResampleTaps);
-  makeRoom(rows_, std::uint64_t(frame.size.x) * std::uint64_t(frame.samples.y));
-  if (!withDistance) commands.transition(noDistance_, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
-  for (const bool alongY : {false, true}) {
-    std::vector<Binding> bindings = sumBindings(alongY ? rows_ : samples, alongY ? samples : rows_);
-    bindings.emplace_back(&targets.colorEnergy);
-    bindings.emplace_back(withDistance ? &targets.distance : &noDistance_);
-    commands.dispatch(makeComputePipeline(device_, shaders::gather_resample, {withDistance, alongY, taps}), bindings,
-                      {frame.pixelExtent.x, alongY ? frame.pixelExtent.y : frame.seenExtent.y, 1});
-    commands.barrier(kComputeStage, kComputeStage);
-  }
+  image_.record(commands, frame_, frame, {samples.colorEnergyTexels, samples.distanceTexels}, targets);
 }
 
 void GatherPass::record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const FrameTargets& targets) {
@@ -305,14 +293,14 @@ void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& fra
   // Pixels that do not see the volume are empty, without a distance.
   for (const RenderTarget* target : targets.all()) {
     if (frame.pixelExtent == frame.size)
-      commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kComputeStage, kComputeStage);
+      commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
+                          VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
     else
       commands.fill(*target, target == &targets.distance ? std::numeric_limits<float>::infinity() : 0.0f);
   }
   const bool hasStencil = !scalars && frame.raysOfPixel == 0;
   if (hasStencil) recordStencil(commands, frame);
   recordResampling(commands, frame, !hasStencil, targets);
-  commands.barrier(kComputeStage, VK_PIPELINE_STAGE_2_TRANSFER_BIT);
 }
 
 /// Sums outside of what was seen are not stored, and 0.

@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "engine/gathering/gather_frame.h"
+#include "engine/gathering/gather_image.h"
 #include "engine/gathering/gather_stages.h"
 #include "engine/gathering/gather_volume.h"
 #include "engine/scene/holdout.h"
@@ -16,9 +17,9 @@
 
 namespace freevoxels {
 
-/// COMPUTE gather.comp, gather_roughness.comp, gather_refine.comp, gather_list_offsets.comp, gather_list.comp, gather_stencil.comp and
-/// gather_resample.comp: premultiplied RGBA in `targets.colorEnergy` and the mean distance in `targets.distance`, if that exists. Leaves the
-/// targets in layout GENERAL, visible to transfer.
+/// COMPUTE gather.comp, gather_roughness.comp, gather_refine.comp, gather_list_offsets.comp, gather_list.comp and gather_stencil.comp, and
+/// GatherImage: premultiplied RGBA in `targets.colorEnergy` and the mean distance in `targets.distance`, if that exists. Leaves the targets
+/// in layout GENERAL, visible to later commands.
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
@@ -124,10 +125,10 @@ class GatherPass {
   Buffer frame_;  ///< shader::GatherFrame
   std::shared_ptr<const Holdout> heldOut_;
   Buffer holdoutDistances_;  ///< of `heldOut_`
-  RenderTarget noDistance_;  ///< bound where a frame has none, of the format that the shader declares
-  Buffer noLight_;           ///< and where it has no scattered light
+  Buffer noLight_;           ///< bound where a frame has no scattered light
   TexelView noLightTexels_;
-  Sums gathered_, smoothed_, rows_;
+  Sums gathered_, smoothed_;
+  GatherImage image_;
   Adaptive adaptive_;
 };
 

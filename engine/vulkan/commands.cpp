@@ -221,7 +221,7 @@ void Commands::fill(const RenderTarget& target, float value) {
   const VkClearColorValue color{.float32 = {value, value, value, value}};
   const VkImageSubresourceRange whole{VK_IMAGE_ASPECT_COLOR_BIT, 0, 1, 0, 1};
   vkCmdClearColorImage(buffer_, target.handle(), VK_IMAGE_LAYOUT_GENERAL, &color, 1, &whole);
-  barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT);
+  barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
 }
 
 void Commands::copy(const Buffer& from, const Buffer& to, VkBufferCopy region) {

@@ -104,7 +104,7 @@ class Commands {
     vkCmdFillBuffer(buffer_, buffer.handle(), 0, VK_WHOLE_SIZE, 0);
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
-  /// Records filling all channels of a target in any layout with `value`, and leaves it in GENERAL, visible to compute shaders.
+  /// Records filling all channels of a target in any layout with `value`, and leaves it in GENERAL.
   void fill(const RenderTarget& target, float value);
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
   /// Copies a target, which must be in layout GENERAL and visible to the transfer stage, and stays in that

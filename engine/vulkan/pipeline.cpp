@@ -44,15 +44,14 @@ class SpecialisationInfo {
 VkPipelineColorBlendAttachmentState blendState(Blend blend) {
   const VkBlendFactor kept =
       blend == Blend::Additive ? VK_BLEND_FACTOR_ONE : VK_BLEND_FACTOR_ONE_MINUS_SRC_ALPHA;
-  return {.blendEnable = VK_TRUE,
+  return {.blendEnable = blend == Blend::Replace ? VK_FALSE : VK_TRUE,
           .srcColorBlendFactor = VK_BLEND_FACTOR_ONE,
           .dstColorBlendFactor = kept,
           .colorBlendOp = VK_BLEND_OP_ADD,
           .srcAlphaBlendFactor = VK_BLEND_FACTOR_ONE,
           .dstAlphaBlendFactor = kept,
           .alphaBlendOp = VK_BLEND_OP_ADD,
-          .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT |
-                            VK_COLOR_COMPONENT_A_BIT};
+          .colorWriteMask = VK_COLOR_COMPONENT_R_BIT | VK_COLOR_COMPONENT_G_BIT | VK_COLOR_COMPONENT_B_BIT | VK_COLOR_COMPONENT_A_BIT};
 }
 
 /// The fixed-function state of a graphics pipeline.

@@ -34,6 +34,7 @@ using Specialisation = std::vector<std::uint32_t>;
 
 /// How a fragment is blended into an attachment.
 enum class Blend {
+  Replace,   ///< source
   Additive,  ///< source + destination
   Over,      ///< source + (1 - alpha of the fragment's output for this attachment) * destination
 };

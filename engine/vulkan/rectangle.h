@@ -1,0 +1,21 @@
+#pragma once
+// Draws rectangles of images whose pixels a fragment shader computes.
+
+#include <span>
+
+#include "engine/vulkan/commands.h"
+#include "engine/vulkan/image.h"
+#include "engine/vulkan/pipeline.h"
+
+namespace freevoxels {
+
+/// `fragment` replaces the pixels of images of these formats.
+Pipeline makeRectanglePipeline(const Device& device, const Shader& fragment, std::span<const VkFormat> formats,
+                               const Specialisation& constants = {});
+
+/// Records a draw of the pixels from `first` to `first` + `extent`, which must be inside of all images. These are in layout GENERAL and
+/// stay in it; their pixels are written by the stage COLOR_ATTACHMENT_OUTPUT. `push` points to the pipeline's push constants.
+void drawRectangle(Commands& commands, const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes,
+                   std::span<const RenderTarget* const> images, glm::ivec2 first, glm::ivec2 extent);
+
+}  // namespace freevoxels
