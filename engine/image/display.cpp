@@ -3,8 +3,10 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdint>
+#include <span>
 
 #include "engine/image/srgb.h"
 
@@ -31,12 +33,6 @@ float toneMapped(ToneMap map, float light) {
   return light;
 }
 
-void setColor(std::uint8_t& sample, float linear) {
-  sample = srgbByteFromLinear(linear);
-}
-void setColor(std::uint16_t& sample, float linear) {
-  sample = std::uint16_t(std::lround(65535.0f * srgbFromLinear(linear)));
-}
 void setAlpha(std::uint8_t& sample, float alpha) {
   sample = byteFromUnit(alpha);
 }
@@ -53,8 +49,14 @@ class RowWriter {
 
   void write(int row, Sample* samples) const {
     const glm::vec3 behind = backgroundOf(row);
+    std::array<Sample, 4> empty;  // a pixel without light, as many are
+    writePixel(glm::vec4(0.0f), behind, empty.data());
     const glm::vec4* const pixels = &image_.pixels[std::size_t(row) * std::size_t(image_.size.x)];
-    for (int x = 0; x < image_.size.x; ++x) writePixel(pixels[x], behind, samples + std::size_t(x) * channels_);
+    for (int x = 0; x < image_.size.x; ++x, samples += channels_)
+      if (pixels[x] == glm::vec4(0.0f))
+        std::copy_n(empty.data(), channels_, samples);
+      else
+        writePixel(pixels[x], behind, samples);
   }
 
  private:
@@ -64,6 +66,9 @@ class RowWriter {
     const int rows = image_.wholeSize.y > 0 ? image_.wholeSize.y : image_.size.y;
     return glm::mix(look_.background->top, look_.background->bottom, (float(row + image_.offset.y) + 0.5f) / float(rows));
   }
+
+  void setColor(std::uint8_t& sample, float linear) const { sample = srgbByteFromLinear(buckets_, linear); }
+  void setColor(std::uint16_t& sample, float linear) const { sample = std::uint16_t(std::lround(65535.0f * srgbFromLinear(linear))); }
 
   glm::vec4 shown(const glm::vec4& pixel) const {
     glm::vec4 result = pixel;
@@ -89,6 +94,7 @@ class RowWriter {
   const DisplayLook& look_;
   std::size_t channels_;
   float gain_;
+  std::span<const shader::SrgbBucket> buckets_ = srgbBuckets();
 };
 
 }  // namespace

@@ -22,14 +22,6 @@ class SrgbByteTable {
 
   std::span<const shader::SrgbBucket> buckets() const { return buckets_; }
 
-  std::uint8_t at(float linear) const {
-    const auto bits = std::bit_cast<std::uint32_t>(linear);
-    if (bits < kFirst) return 0;
-    if (bits >= kEnd) return 255;
-    const shader::SrgbBucket& bucket = buckets_[(bits - kFirst) >> kDropped];
-    return std::uint8_t(bucket.byte + std::uint32_t(linear >= bucket.next));
-  }
-
  private:
   static constexpr std::uint32_t kDropped = shader::kSrgbDroppedBits;  ///< low bits of the mantissa that do not select a bucket
   /// Values up to half a byte on the linear part of the curve, 0.5 / 255 / 12.92 = 1.24 / 2^13, map to byte
@@ -58,19 +50,11 @@ class SrgbByteTable {
   std::array<shader::SrgbBucket, kBuckets> buckets_;
 };
 
-const SrgbByteTable& srgbByteTable() {
-  static const SrgbByteTable table;
-  return table;
-}
-
 }  // namespace
 
-std::uint8_t srgbByteFromLinear(float linear) {
-  return srgbByteTable().at(linear);
-}
-
 std::span<const shader::SrgbBucket> srgbBuckets() {
-  return srgbByteTable().buckets();
+  static const SrgbByteTable table;
+  return table.buckets();
 }
 
 }  // namespace freevoxels

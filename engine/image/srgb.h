@@ -1,6 +1,7 @@
 #pragma once
 // The transfer curve of sRGB, IEC 61966-2-1.
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <glm/glm.hpp>
@@ -30,9 +31,19 @@ inline std::uint8_t byteFromUnit(float unit) {
   return std::uint8_t(whole + int(scaled - float(whole) >= 0.5f));
 }
 
-/// Equals byteFromUnit(srgbFromLinear(linear)) for 0..1, but uses a table.
-std::uint8_t srgbByteFromLinear(float linear);
-/// The table that srgbByteFromLinear looks up, for shaders; display_interface.h describes its layout.
+/// The table of srgbByteFromLinear, for shaders too; display_interface.h describes its layout.
 std::span<const shader::SrgbBucket> srgbBuckets();
+
+/// Equals byteFromUnit(srgbFromLinear(linear)) for 0..1. `buckets` are srgbBuckets().
+inline std::uint8_t srgbByteFromLinear(std::span<const shader::SrgbBucket> buckets, float linear) {
+  const auto bits = std::bit_cast<std::uint32_t>(linear);
+  if (bits < shader::kSrgbFirstBits) return 0;
+  if (bits >= shader::kSrgbEndBits) return 255;
+  const shader::SrgbBucket& bucket = buckets[(bits - shader::kSrgbFirstBits) >> shader::kSrgbDroppedBits];
+  return std::uint8_t(bucket.byte + std::uint32_t(linear >= bucket.next));
+}
+inline std::uint8_t srgbByteFromLinear(float linear) {
+  return srgbByteFromLinear(srgbBuckets(), linear);
+}
 
 }  // namespace freevoxels
