@@ -43,8 +43,9 @@ std::uint64_t CubeDrawing::State::leastBytes(const Camera& camera, const FrameSe
     largest = std::max(largest, SweptLight::leastBytes(levelAt(0).source, lightSource(light, outline.indexToWorld)));
   if (wanted.lighting && hasScatteredLight(*wanted.lighting, classification.emission.has_value()))
     largest = std::max(largest, scatteringBytes(device, outline, *wanted.lighting));
-  constexpr std::uint64_t kSums = 3, kSumBytes = sizeof(glm::vec4) + sizeof(float);
-  const std::uint64_t sums = kSums * kSumBytes * std::uint64_t(lattice.samples.x) * std::uint64_t(lattice.samples.y);
+  constexpr std::uint64_t kSums = 2, kSumBytes = sizeof(glm::vec4) + sizeof(float);  // before and after the stencil
+  const std::uint64_t sums =
+      kSums * kSumBytes * std::uint64_t(lattice.samples.x) * std::uint64_t(lattice.samples.y) + GatherImage::rowBytes(lattice);
   const std::uint64_t bytes = 2 * targetBytes(wanted) + sums + largest;
   return bytes + bytes / 8 + (std::uint64_t(4) << 20);
 }

@@ -118,7 +118,7 @@ struct SampleListHead {
 
 // gather_resample.frag
 struct ResamplePush {
-  int firstRow;  // of the lattice, in the image of rows
+  int firstRow;  // the row of the lattice that is row 0 of the image of rows
 };
 
 // Which samples of the lattice a dispatch of gather.comp marches.

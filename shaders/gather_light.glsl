@@ -34,6 +34,7 @@ vec3 surfaceLight(SegmentLight lit, int light, vec3 toLight, vec3 depth, vec3 to
 // The light of one source that a segment scatters to the eye, for albedo 1: its mean over the segment, attenuated by what lies in front
 // within the segment. `depth` is the segment's optical depth for light.
 vec3 lightOf(int light, SegmentLight lit, vec3 depth, vec3 toEye) {
+  // Values are selected, as lavapipe would compile the shader anew for uniforms on which a branch depends.
   const SampleLight source = frame.lights[light];
   const bool atInfinity = source.atInfinity != 0;
   const vec3 apart = frame.indexToWorld * (source.positionOrDirection - lit.position);

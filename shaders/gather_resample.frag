@@ -10,6 +10,7 @@
 #include "mean_distance.glsl"
 
 layout(constant_id = 0) const int kTaps = kResampleTaps;
+layout(constant_id = 1) const int kRaysOfPixel = 0;  // GatherFrame::raysOfPixel
 
 layout(scalar, push_constant) uniform Push { ResamplePush push; };
 #ifdef ALONG_Y
@@ -28,9 +29,9 @@ layout(location = 1) out float distanceOut;
 
 // Sets the weights of kTaps samples, and returns the index of the first one.
 int weightsOf(int pixel, out float weights[kTaps]) {
-  if (frame.raysOfPixel > 0) {
-    [[unroll]] for (int i = 0; i < kTaps; ++i) weights[i] = i < frame.raysOfPixel ? 1.0 / float(frame.raysOfPixel) : 0.0;
-    return kLatticeMargin + pixel * frame.raysOfPixel;
+  if (kRaysOfPixel > 0) {
+    [[unroll]] for (int i = 0; i < kTaps; ++i) weights[i] = i < kRaysOfPixel ? 1.0 / float(kRaysOfPixel) : 0.0;
+    return kLatticeMargin + pixel * kRaysOfPixel;
   }
   const float halfPixel = 0.5 / frame.pitch;
   const float before = floor(float(pixel) / frame.pitch);  // samples between the first pixel and this one
@@ -91,7 +92,7 @@ void main() {
     const vec4 texel = colorEnergyAt(at);
     color += weights[i] * texel;
 #ifdef WITH_DISTANCE
-    if (frame.raysOfPixel == 0 || weights[i] > 0.0) addSample(mean, weights[i], texel.a, distanceAt(at));
+    if (kRaysOfPixel == 0 || weights[i] > 0.0) addSample(mean, weights[i], texel.a, distanceAt(at));
 #endif
   }
   const float distance = distancesOf(mean, color.a);

@@ -3,7 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <vector>
+#include <span>
 
 #include "embedded/gather_pixels.h"
 #include "embedded/gather_pixels_distance.h"
@@ -22,13 +22,18 @@ constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_O
 /// The most rows of the lattice that are drawn along x at a time: they stay in a processor's cache, and no image is higher than devices allow.
 constexpr int kBandRows = 512;
 
-/// The first and the end of the rows of the lattice that the pixels `first` to `end` - 1 may read, and that are stored.
+/// The first and the end of the rows of the lattice that the pixels `first` to `end` - 1 may read, of those that are stored: at least one,
+/// as pixels beyond these read the row at the border.
 glm::ivec2 rowsOf(const shader::GatherFrame& frame, int first, int end) {
   constexpr int kMargin = 3;
   const double pitch = double(frame.pitch);
   const int low = int(std::floor(first / pitch)) - kMargin, high = int(std::ceil(end / pitch)) + shader::kResampleTaps + kMargin;
-  const glm::ivec2 stored(frame.firstSeen.y, frame.firstSeen.y + frame.seenExtent.y);
-  return glm::clamp(glm::ivec2(low, high), stored.x, stored.y);
+  const int endStored = frame.firstSeen.y + frame.seenExtent.y, begin = std::clamp(low, frame.firstSeen.y, endStored - 1);
+  return {begin, std::clamp(high, begin + 1, endStored)};
+}
+
+glm::ivec2 sizeOfRows(const shader::GatherFrame& frame) {
+  return {frame.size.x, std::min(kBandRows, frame.samples.y)};
 }
 
 /// How many rows of pixels need at most kBandRows rows of the lattice.
@@ -38,6 +43,11 @@ int pixelsOfBand(const shader::GatherFrame& frame) {
 }
 
 }  // namespace
+
+std::uint64_t GatherImage::rowBytes(const shader::GatherFrame& frame) {
+  const glm::ivec2 size = sizeOfRows(frame);
+  return std::uint64_t(size.x) * std::uint64_t(size.y) * (bytesPerPixel(kTargetColorFormat) + bytesPerPixel(kTargetScalarFormat));
+}
 
 void GatherImage::makeRoom(glm::ivec2 size, bool withDistance) {
   const auto suffices = [&](const RenderTarget& image) { return image.exists() && glm::max(image.size(), size) == image.size(); };
@@ -55,13 +65,13 @@ void GatherImage::makeRoom(glm::ivec2 size, bool withDistance) {
 void GatherImage::record(Commands& commands, const Buffer& frameBuffer, const shader::GatherFrame& frame, const Sums& sums,
                          const FrameTargets& targets) {
   const bool withDistance = targets.distance.exists();
-  if (frame.pixelExtent.x <= 0 || frame.pixelExtent.y <= 0) return;
-  makeRoom({frame.size.x, std::min(kBandRows, frame.samples.y)}, withDistance);
+  if (frame.pixelExtent.x <= 0 || frame.pixelExtent.y <= 0 || frame.seenExtent.y <= 0) return;
+  makeRoom(sizeOfRows(frame), withDistance);
   const std::uint32_t count = withDistance ? 2 : 1, taps = frame.pitch >= 1.0f ? shader::kSparseResampleTaps : shader::kResampleTaps;
   const std::array<const RenderTarget*, 2> rows{&rowColors_, &rowDistances_}, pixels{&targets.colorEnergy, &targets.distance};
   constexpr std::array kFormats{kTargetColorFormat, kTargetScalarFormat};
   const auto pipeline = [&](const Shader& shader) {
-    return makeRectanglePipeline(device_, shader, std::span(kFormats).first(count), {taps});
+    return makeRectanglePipeline(device_, shader, std::span(kFormats).first(count), {taps, std::uint32_t(frame.raysOfPixel)});
   };
   const Pipeline drawRows = pipeline(withDistance ? shaders::gather_rows_distance : shaders::gather_rows);
   const Pipeline drawPixels = pipeline(withDistance ? shaders::gather_pixels_distance : shaders::gather_pixels);
@@ -76,6 +86,7 @@ void GatherImage::record(Commands& commands, const Buffer& frameBuffer, const sh
     const glm::ivec2 band = rowsOf(frame, first, next);
     FV_CHECK_LE(band.y - band.x, kBandRows);
     const shader::ResamplePush push{.firstRow = band.x};
+    commands.makeRoomForPixels(std::uint64_t(frame.pixelExtent.x) * std::uint64_t(band.y - band.x + next - first));
     for (std::uint32_t i = 0; i < count; ++i)
       commands.transition(*rows[i], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kOutput);
     draw(drawRows, samples, push, rows, {frame.firstPixel.x, 0}, {frame.pixelExtent.x, band.y - band.x});

@@ -1,6 +1,8 @@
 #pragma once
 // The image of a frame's samples.
 
+#include <cstdint>
+
 #include "engine/splatting/frame_targets.h"
 #include "engine/vulkan/commands.h"
 #include "shaders/gather_interface.h"
@@ -12,6 +14,8 @@ namespace freevoxels {
 class GatherImage {
  public:
   explicit GatherImage(const Device& device) : device_(device) {}
+  /// Device memory of the rows of a frame, in bytes, with distances.
+  static std::uint64_t rowBytes(const shader::GatherFrame& frame);
 
   /// The sums of the lattice.
   struct Sums {

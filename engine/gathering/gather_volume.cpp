@@ -267,7 +267,8 @@ void GatherVolume::describe(shader::GatherFrame& frame) const {
   for (int number = frame.finest; number <= frame.coarsest; ++number) frame.levels[number] = bricks_.levels()[std::size_t(number)];
 }
 
-/// By rank: what shade_blocks.comp stores; of levels that are not shaded extinctions alone, as brick_quads.comp packs them.
+/// By rank: what shade_blocks.comp stores; of levels that are not shaded extinctions alone, rounded to halves by the host as
+/// brick_quads.comp rounds them where the device rounds to nearest.
 std::vector<glm::uvec2> GatherVolume::downloadSources(int level, std::size_t count) const {
   const DeviceVolume& volume = built_.volume;
   std::vector<glm::uvec2> stored(count);

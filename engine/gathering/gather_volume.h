@@ -150,8 +150,8 @@ class GatherVolume {
   std::vector<glm::uvec2> downloadSources(int level, std::size_t count) const;
   void shade(Commands& commands, const Shading& shading, int level);
   void recordShading(Commands& commands, const Shading& shading);
-  /// Whether the level's blocks have source terms. The colours of scalars without light come from the transfer function, and all
-  /// voxels without light and colours of their own have the volume's.
+  /// Whether the level's blocks have source terms. The colours of scalars without light come from the transfer function, and
+  /// voxels without light, emission and colours of their own have the volume's.
   bool shadesLevel(int level) const;
   std::optional<shader::CodeBricks> scalarCodes(int level) const;
   void recordQuads(Commands& commands, int axis);

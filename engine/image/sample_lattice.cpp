@@ -20,7 +20,7 @@ using namespace shader;
 
 constexpr double kNoDistance = -1.0;
 constexpr int kMaxSamples = 1 << 16;
-/// Larger images have no more samples than this as long as that is one a pixel. Their sums take 0.9 GiB.
+/// Larger images have no more samples than this as long as that is one a pixel. Their sums take 0.63 GiB.
 constexpr double kManySamples = 1 << 24;
 /// No image has more samples than this, which a texel buffer can hold.
 constexpr double kMostSamples = 1 << 26;

@@ -58,7 +58,7 @@ struct LatticeSample {
   double distance = 0.0;
 };
 
-/// What gather_stencil.comp and gather_resample.comp compute, in double precision on the host: restores the round footprint of classified
+/// What gather_stencil.comp and gather_resample.frag compute, in double precision on the host: restores the round footprint of classified
 /// voxels, and interpolates the samples and averages them over pixels. `samples` are those of the whole lattice, x fastest.
 Image resolveLattice(const SampleLattice& lattice, glm::ivec2 size, std::vector<LatticeSample> samples);
 

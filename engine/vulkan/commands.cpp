@@ -192,6 +192,13 @@ void Commands::makeRoomInSlice(double milliseconds) {
   sliceMilliseconds_ += milliseconds;
 }
 
+void Commands::makeRoomForPixels(std::uint64_t pixels) {
+  constexpr std::uint64_t kPixelsOfGroup = 64;  // as many as a workgroup of most passes over images has
+  const std::uint64_t groups = (pixels + kPixelsOfGroup - 1) / kPixelsOfGroup;
+  makeRoomInSlice(expectedMilliseconds(groups));
+  countGroups(groups);
+}
+
 void Commands::countGroups(std::uint64_t groups) {
   if (!passes_.empty()) passes_.back().units += double(groups);
 }

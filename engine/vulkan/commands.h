@@ -91,6 +91,8 @@ class Commands {
   }
   void bind(const Pipeline& pipeline, std::span<const Binding> bindings, const void* push,
             std::size_t pushBytes);
+  /// To be called before rendering that draws so many pixels, which is not divided: begins a slice where these are expected not to fit.
+  void makeRoomForPixels(std::uint64_t pixels);
 
   /// Records a write of up to 64 KiB into `buffer`. Later commands see it.
   template <typename Value>
@@ -104,7 +106,7 @@ class Commands {
     vkCmdFillBuffer(buffer_, buffer.handle(), 0, VK_WHOLE_SIZE, 0);
     barrier(VK_PIPELINE_STAGE_2_TRANSFER_BIT, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
   }
-  /// Records filling all channels of a target in any layout with `value`, and leaves it in GENERAL.
+  /// Records filling all channels of a target in any layout with `value`, and leaves it in GENERAL. Later commands see it.
   void fill(const RenderTarget& target, float value);
   void copy(const Buffer& from, const Buffer& to, VkBufferCopy region);
   /// Copies a target, which must be in layout GENERAL and visible to the transfer stage, and stays in that

@@ -190,7 +190,7 @@ OwnedPipeline compileGraphics(const Device& device, VkPipelineCache cache, VkPip
                                           .layout = layout};
   VkPipeline pipeline = VK_NULL_HANDLE;
   VK_CHECK(vkCreateGraphicsPipelines(device.handle(), cache, 1, &info, nullptr, &pipeline));
-  device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), vertex.name);
+  device.setName(VK_OBJECT_TYPE_PIPELINE, std::uint64_t(pipeline), fragment.name);
   return {device.handle(), pipeline};
 }
 

@@ -1,9 +1,11 @@
 #include "engine/vulkan/rectangle.h"
 
+#include <algorithm>
 #include <cstdint>
 #include <vector>
 
 #include "embedded/rectangle.h"
+#include "engine/core/error.h"
 
 namespace freevoxels {
 
@@ -14,6 +16,7 @@ Pipeline makeRectanglePipeline(const Device& device, const Shader& fragment, std
 
 void drawRectangle(Commands& commands, const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes,
                    std::span<const RenderTarget* const> images, glm::ivec2 first, glm::ivec2 extent) {
+  FV_CHECK_LT(0, std::min(extent.x, extent.y));
   std::vector<VkRenderingAttachmentInfo> attachments;
   for (const RenderTarget* image : images)
     attachments.push_back({.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,

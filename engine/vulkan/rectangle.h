@@ -13,8 +13,9 @@ namespace freevoxels {
 Pipeline makeRectanglePipeline(const Device& device, const Shader& fragment, std::span<const VkFormat> formats,
                                const Specialisation& constants = {});
 
-/// Records a draw of the pixels from `first` to `first` + `extent`, which must be inside of all images. These are in layout GENERAL and
-/// stay in it; their pixels are written by the stage COLOR_ATTACHMENT_OUTPUT. `push` points to the pipeline's push constants.
+/// Records a draw of the pixels from `first` to `first` + `extent`, which is not empty and inside of all images; others stay as they are.
+/// The images are in layout GENERAL and stay in it. Barriers are the caller's: COLOR_ATTACHMENT_OUTPUT writes the pixels. `push` points to
+/// the pipeline's push constants.
 void drawRectangle(Commands& commands, const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes,
                    std::span<const RenderTarget* const> images, glm::ivec2 first, glm::ivec2 extent);
 

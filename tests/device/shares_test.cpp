@@ -226,6 +226,25 @@ TEST_F(SharesTest, HostResolvesALatticeAsTheDeviceDoes) {
   }
 }
 
+/// Images of several bands of rows, in some of which there is nothing: above the volume, and below it.
+TEST_F(SharesTest, AHighImageIsThatOfItsSharesWhereverTheVolumeIs) {
+  const glm::ivec3 size(16, 1000, 16);
+  const Volume column = makeVolume(size, cubeTransform(size), [](int, int y, int) { return 0.5 + 0.4 * std::sin(0.1 * y); });
+  Renderer renderer(device(), column, {.densityScale = 20.0}, {});
+  const FrameSettings settings{.size = {16, 1500}, .depth = true};
+  for (const double above : {0.0, 0.18, -0.18}) {
+    SCOPED_TRACE(above);
+    Camera camera{.position = {0.0, above, 2.5}, .lookAt = {0.0, above, 0.0}};
+    camera.verticalFov = 28.0;
+    const Image image = renderer.render(camera, settings), shared = resolveSums(renderer.renderShares(camera, settings, {}), true);
+    EXPECT_LE(largestPixelDifference(image, shared), 2e-5);
+    for (std::size_t i = 0; i < image.depth.size(); ++i)
+      if (image.pixels[i].a > 0.01f) {
+        EXPECT_NEAR(image.depth[i], shared.depth[i], 1e-3 * shared.depth[i]);
+      }
+  }
+}
+
 TEST_F(SharesTest, NoShareIsEmptyAndNoneIsLeftOutUnnoticed) {
   const Scene scene = levels();
   Renderer renderer(device(), scene.volume, scene.classification, {});
