@@ -216,7 +216,8 @@ struct GatherFrame {
   float projectionLayer;          // the transfer function's unit distance times extinctionUnit
   int raysOfPixel;                // with a holdout: along each axis, the samples of a pixel, of which alone it is made; otherwise 0
   uvec2 holdout;                  // with a holdout: device address of the distance from the eye plane at which the rays of each pixel end
-  // The weight of stretches of scalars in four parts beside those in two: from 0 to 1 while stretches become long (quartersOf).
+  // The weight of stretches of scalars in four parts beside those in two: from 0 to 1 near the diagonals of voxels and their faces
+  // (quartersOf).
   float quarters;
   int clips;               // 1 if rays are marched in a part of the volume alone (RayClip, in index space):
   vec3 clipLow, clipHigh;  // in this box,

@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <functional>
 #include <limits>
 #include <vector>
 
@@ -184,8 +185,11 @@ void extend(glm::ivec2& first, glm::ivec2& extent, glm::ivec2 otherFirst, glm::i
 
 double quartersOf(glm::dvec3 direction) {
   constexpr double kLong = 1.45, kLongest = 1.6;  // voxels
-  const double length = glm::length(direction) / std::abs(direction[majorAxis(direction)]);
-  return std::clamp((length - kLong) / (kLongest - kLong), 0.0, 1.0);
+  constexpr double kOblique = 0.87, kDiagonal = 0.97;  // slopes
+  const auto part = [](double value, double low, double high) { return std::clamp((value - low) / (high - low), 0.0, 1.0); };
+  std::array<double, 3> sizes{std::abs(direction.x), std::abs(direction.y), std::abs(direction.z)};
+  std::ranges::sort(sizes, std::greater());
+  return std::max(part(glm::length(direction) / sizes[0], kLong, kLongest), part(sizes[1] / sizes[0], kOblique, kDiagonal));
 }
 
 /// Tests a grid of rays, with a margin for the rays in between.

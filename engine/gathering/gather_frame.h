@@ -19,8 +19,8 @@ namespace freevoxels {
 shader::GatherFrame makeGatherFrame(const DeviceVolume& volume, const Camera& camera, const FrameSettings& settings,
                                     const DetailRule& detail, double endTransmittance);
 
-/// The weight of stretches of scalars in four parts, where rays of this direction in index space are seen in the middle of the image: 0
-/// where a stretch from slice to slice is as long as along the diagonal of a voxel's face, and 1 on that of the voxel.
+/// The weight of stretches of scalars in four parts, where rays of this direction in index space are seen in the middle of the image: 1
+/// along the diagonals of a voxel and of its faces, where samples lie at the same places of all voxels, and 0 away from them.
 double quartersOf(glm::dvec3 direction);
 
 /// Gives frames of several volumes, with the same camera and settings, one lattice, fine enough for each, and the rectangles that are seen

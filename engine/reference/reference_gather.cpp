@@ -22,8 +22,9 @@ constexpr double kNearReference = 0.75;
 /// A ray marches along the main axis if its component along it is at least this part of its largest
 /// component.
 constexpr double kMinAlongMain = 0.5;
-/// Lengths in voxels of a stretch from slice to slice, in the middle of the image, from which on its quarters count, and count fully.
-constexpr double kLongStretch = 1.45, kLongestStretch = 1.6;
+/// Lengths in voxels of a stretch from slice to slice, in the middle of the image, from which on its quarters count, and count fully. So
+/// they do from slopes along the diagonal of a voxel's face.
+constexpr double kLongStretch = 1.45, kLongestStretch = 1.6, kObliqueSlope = 0.87, kDiagonalSlope = 0.97;
 /// The mean of a transfer function is that of both ends if they are fewer intervals apart than this.
 constexpr double kMinChange = 16.0;
 
@@ -84,8 +85,12 @@ ReferenceGather::ReferenceGather(const Volume& volume, const Classification& cla
                                              : glm::dmat3(rays_.directionX, rays_.directionY, middle.direction));
   mainAxis_ = majorAxis(middle.direction);
   const double stretch = glm::length(middle.direction) / std::abs(middle.direction[mainAxis_]);
-  quarters_ = std::clamp((stretch - kLongStretch) / (kLongestStretch - kLongStretch), 0.0, 1.0);
   const std::array<int, 2> sides = sidesOf(mainAxis_);
+  const double slope =
+      std::max(std::abs(middle.direction[sides[0]]), std::abs(middle.direction[sides[1]])) / std::abs(middle.direction[mainAxis_]);
+  quarters_ = std::clamp(
+      std::max((stretch - kLongStretch) / (kLongestStretch - kLongStretch), (slope - kObliqueSlope) / (kDiagonalSlope - kObliqueSlope)),
+      0.0, 1.0);
   const double voxel = std::min(glm::length(linear_[sides[0]]), glm::length(linear_[sides[1]])) /
                        glm::length(linear_ * (rays_.orthographic ? rays_.originX : rays_.directionX));  // seen from straight in front
 
