@@ -7,6 +7,7 @@
 #include "embedded/ui_fragment.h"
 #include "embedded/ui_vertex.h"
 #include "engine/core/error.h"
+#include "engine/vulkan/rectangle.h"
 #include "shaders/ui_interface.h"
 
 namespace freevoxels {
@@ -111,20 +112,11 @@ void UiPainter::draw(const ImDrawData& triangles, const Swapchain& target,
   Commands commands(device_);
   recordTextures(commands);
   commands.beginPass("user interface");
-  commands.transition(target.image(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                      kAll, kOutput);
-  const VkRenderingAttachmentInfo attachment{.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                                             .imageView = target.view(),
-                                             .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                                             .loadOp = VK_ATTACHMENT_LOAD_OP_CLEAR,
-                                             .storeOp = VK_ATTACHMENT_STORE_OP_STORE};
+  commands.transition(target.image(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, kAll, kOutput);
   const glm::ivec2 size = target.size();
-  const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                  .renderArea = {{0, 0}, {std::uint32_t(size.x), std::uint32_t(size.y)}},
-                                  .layerCount = 1,
-                                  .colorAttachmentCount = 1,
-                                  .pColorAttachments = &attachment};
-  vkCmdBeginRendering(commands.handle(), &rendering);
+  const VkImageView view = target.view();
+  beginRendering(commands, std::span(&view, 1), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, VK_ATTACHMENT_LOAD_OP_CLEAR,
+                 {{0, 0}, {std::uint32_t(size.x), std::uint32_t(size.y)}});
   record(commands, triangles, size);
   vkCmdEndRendering(commands.handle());
   commands.transition(target.image(), VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,

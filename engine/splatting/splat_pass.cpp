@@ -12,6 +12,7 @@
 #include "embedded/splat_vertex.h"
 #include "engine/core/error.h"
 #include "engine/vulkan/commands.h"
+#include "engine/vulkan/rectangle.h"
 
 namespace freevoxels {
 
@@ -56,21 +57,11 @@ SplatPass::SplatPass(const Device& device, bool withDistance, bool sorted)
 
 void SplatPass::beginRendering(Commands& commands, const FrameTargets& targets, const FrameConstants& frame,
                                VkAttachmentLoadOp load) const {
-  std::vector<VkRenderingAttachmentInfo> attachments;
-  for (const RenderTarget* target : targets.all())
-    attachments.push_back({.sType = VK_STRUCTURE_TYPE_RENDERING_ATTACHMENT_INFO,
-                           .imageView = target->view(),
-                           .imageLayout = VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL,
-                           .loadOp = load,
-                           .storeOp = VK_ATTACHMENT_STORE_OP_STORE});
+  std::vector<VkImageView> images;
+  for (const RenderTarget* target : targets.all()) images.push_back(target->view());
   const VkExtent2D extent{std::uint32_t(targets.colorEnergy.size().x),
                           std::uint32_t(targets.colorEnergy.size().y)};
-  const VkRenderingInfo rendering{.sType = VK_STRUCTURE_TYPE_RENDERING_INFO,
-                                  .renderArea = {{0, 0}, extent},
-                                  .layerCount = 1,
-                                  .colorAttachmentCount = std::uint32_t(attachments.size()),
-                                  .pColorAttachments = attachments.data()};
-  vkCmdBeginRendering(commands.handle(), &rendering);
+  freevoxels::beginRendering(commands, images, VK_IMAGE_LAYOUT_COLOR_ATTACHMENT_OPTIMAL, load, {{0, 0}, extent});
   const float margin = frame.viewportMargin;
   const VkViewport viewport{
       -margin, -margin, float(extent.width) + 2 * margin, float(extent.height) + 2 * margin, 0.0f, 1.0f};

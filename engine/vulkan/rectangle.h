@@ -1,5 +1,5 @@
 #pragma once
-// Draws rectangles of images whose pixels a fragment shader computes.
+// Rendering into rectangles of images, whose pixels a fragment shader may compute.
 
 #include <span>
 
@@ -8,6 +8,9 @@
 #include "engine/vulkan/pipeline.h"
 
 namespace freevoxels {
+
+/// Begins rendering into a rectangle of images, which are in this layout. Until vkCmdEndRendering no pass may begin.
+void beginRendering(Commands& commands, std::span<const VkImageView> images, VkImageLayout layout, VkAttachmentLoadOp load, VkRect2D area);
 
 /// `fragment` replaces the pixels of images of these formats.
 Pipeline makeRectanglePipeline(const Device& device, const Shader& fragment, std::span<const VkFormat> formats,
