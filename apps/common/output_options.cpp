@@ -1,9 +1,12 @@
 #include "apps/common/output_options.h"
 
 #include <fmt/format.h>
+#include <tbb/blocked_range.h>
+#include <tbb/parallel_for.h>
 #include <unistd.h>
 
 #include <algorithm>
+#include <atomic>
 #include <cmath>
 #include <cstdio>
 #include <filesystem>
@@ -15,6 +18,8 @@
 namespace freevoxels {
 
 namespace {
+
+constexpr std::size_t kPixelsATask = std::size_t(1) << 16;
 
 std::string extensionOf(const std::string& file) {
   std::string extension = std::filesystem::path(file).extension().string();
@@ -104,15 +109,19 @@ void writeImages(const Image& whole, const OutputDescription& output, std::span<
 }
 
 std::string clearPixelsThatAreNoNumbers(Image& image) {
-  std::size_t cleared = 0;
-  for (glm::vec4& pixel : image.pixels) {
-    const float sum = pixel.r + pixel.g + pixel.b + pixel.a;
-    if (std::isfinite(sum)) continue;
-    pixel = glm::vec4(0.0f);
-    ++cleared;
-  }
+  std::atomic<std::size_t> cleared = 0;
+  tbb::parallel_for(tbb::blocked_range<std::size_t>(0, image.pixels.size(), kPixelsATask),
+                    [&](const tbb::blocked_range<std::size_t>& range) {
+                      for (std::size_t i = range.begin(); i < range.end(); ++i) {
+                        glm::vec4& pixel = image.pixels[i];
+                        if (std::isfinite(pixel.r + pixel.g + pixel.b + pixel.a)) continue;
+                        pixel = glm::vec4(0.0f);
+                        ++cleared;
+                      }
+                    });
   if (cleared == 0) return "";
-  return fmt::format("{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances", cleared);
+  return fmt::format("{} pixels are beyond the range of numbers and become black: use less extreme lights, emission and distances",
+                     cleared.load());
 }
 
 void printNames(std::span<const std::string> files) {

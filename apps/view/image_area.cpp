@@ -47,26 +47,27 @@ void drawChecks(const ImageFrame& frame) {
 }
 
 /// The other method's image, right of the split.
-void drawCompared(const Texture& texture, float part, const ImageFrame& frame) {
+void drawCompared(const Texture& texture, float part, bool isOpaque, const ImageFrame& frame) {
   const auto [low, high] = frame;
   const float split = low.x + part * (high.x - low.x);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   list.PushClipRect({split, low.y}, high, true);
-  drawChecks(frame);
+  if (!isOpaque) drawChecks(frame);
   list.AddImage(textureId(texture), low, high);
   list.PopClipRect();
   list.AddLine({split, low.y}, {split, high.y}, IM_COL32(255, 200, 60, 255), 2.0f);
 }
 
-void drawTextures(const ShownTextures& textures, float split, const ImageFrame& frame) {
-  drawChecks(frame);
+/// `isOpaque`: the textures are, so that nothing behind them is seen.
+void drawTextures(const ShownTextures& textures, float split, bool isOpaque, const ImageFrame& frame) {
+  if (textures.image == nullptr || !isOpaque) drawChecks(frame);
   ImDrawList& list = *ImGui::GetWindowDrawList();
   const bool fades = textures.before != nullptr && textures.weight < 1.0f;
   if (fades) list.AddImage(textureId(*textures.before), frame.low, frame.high);
   const auto alpha = fades ? ImU32(255.0f * textures.weight) : 255u;
   if (textures.image != nullptr)
     list.AddImage(textureId(*textures.image), frame.low, frame.high, {0.0f, 0.0f}, {1.0f, 1.0f}, IM_COL32(255, 255, 255, alpha));
-  if (textures.compared != nullptr) drawCompared(*textures.compared, split, frame);
+  if (textures.compared != nullptr) drawCompared(*textures.compared, split, isOpaque, frame);
 }
 
 /// Moves the values under the curves of the transfer function: to the right a wider window, upwards a lower level, as on the
@@ -193,7 +194,7 @@ void ImageArea::draw(ViewState& state, const ShownTextures& textures) {
   moves_ = false;
   if (room.x < 1.0f || room.y < 1.0f) return;
   const ImageFrame frame{low, {low.x + room.x, low.y + room.y}};
-  drawTextures(textures, state.split, frame);
+  drawTextures(textures, state.split, state.look().background.has_value(), frame);
   constexpr ImGuiButtonFlags kAnyButton = ImGuiButtonFlags_MouseButtonLeft |
                                           ImGuiButtonFlags_MouseButtonMiddle |
                                           ImGuiButtonFlags_MouseButtonRight;

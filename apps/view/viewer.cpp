@@ -186,7 +186,8 @@ void Viewer::drawOpening() {
 }
 
 void Viewer::drawImage(float left, float width, float top, float height) {
-  beginPart("image", {left, top}, {width, height}, {0.0f, 0.0f}, ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
+  beginPart("image", {left, top}, {width, height}, {0.0f, 0.0f},
+            ImGuiWindowFlags_NoBackground | ImGuiWindowFlags_NoScrollbar | ImGuiWindowFlags_NoScrollWithMouse);
   area_.draw(state_, shown_.textures());
   if (state_.overlays.slices) slices_.drawOutlines(state_, {ImGui::GetItemRectMin(), ImGui::GetItemRectMax()});
   if (isOpening()) drawOpening();

@@ -78,7 +78,8 @@ void GatherImage::record(Commands& commands, const Buffer& frameBuffer, const sh
   const std::array<Binding, 3> samples{&frameBuffer, &sums.colorEnergy, &sums.distances}, ofRows{&frameBuffer, rows[0], rows[count - 1]};
   const auto draw = [&](const Pipeline& pass, std::span<const Binding> bindings, const shader::ResamplePush& push,
                         std::span<const RenderTarget* const> images, glm::ivec2 first, glm::ivec2 extent) {
-    drawRectangle(commands, pass, bindings, &push, sizeof(push), images.first(count), first, extent);
+    const std::array views{images[0]->view(), images[1]->view()};
+    drawRectangle(commands, pass, bindings, &push, sizeof(push), std::span(views).first(count), first, extent);
   };
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kFragment);
   for (int first = frame.firstPixel.y, end = frame.firstPixel.y + frame.pixelExtent.y, next = 0; first < end; first = next) {

@@ -94,7 +94,7 @@ class RowWriter {
   const DisplayLook& look_;
   std::size_t channels_;
   float gain_;
-  std::span<const shader::SrgbBucket> buckets_ = srgbBuckets();
+  std::span<const std::uint32_t> buckets_ = srgbBuckets();
 };
 
 }  // namespace

@@ -6,6 +6,7 @@
 #include "embedded/display.h"
 #include "engine/core/error.h"
 #include "engine/image/srgb.h"
+#include "engine/vulkan/rectangle.h"
 
 namespace freevoxels {
 
@@ -14,8 +15,7 @@ static_assert(int(ToneMap::Filmic) == shader::kToneMapFilmic);
 static_assert(int(ToneMap::Aces) == shader::kToneMapAces);
 
 DisplayPass::DisplayPass(const Device& device)
-    : pipeline_(makeComputePipeline(device, shaders::display)),
-      srgb_(device, srgbBuckets().size_bytes(), MemoryUse::Device, "sRGB table") {
+    : device_(device), srgb_(device, srgbBuckets().size_bytes(), MemoryUse::Device, "sRGB table") {
   upload(device, srgb_, std::as_bytes(srgbBuckets()));
 }
 
@@ -24,18 +24,18 @@ void DisplayPass::record(Commands& commands, const RenderTarget& image, const Di
   FV_CHECK_EQ(image.size().x, shown.size().x);
   FV_CHECK_EQ(image.size().y, shown.size().y);
   constexpr VkPipelineStageFlags2 kFragment = VK_PIPELINE_STAGE_2_FRAGMENT_SHADER_BIT;
+  constexpr VkPipelineStageFlags2 kOutput = VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT;
   const Background background = look.background.value_or(Background());
-  const shader::DisplayPush push{.size = image.size(),
-                                 .gain = float(std::exp2(look.exposure)),
-                                 .toneMap = int(look.toneMap),
-                                 .hasBackground = look.background ? 1 : 0,
-                                 .top = background.top,
-                                 .bottom = background.bottom};
-  const std::array<Binding, 3> bindings{&image, &shown, &srgb_};
+  const shader::DisplayPush push{
+      .height = image.size().y, .gain = float(std::exp2(look.exposure)), .top = background.top, .bottom = background.bottom};
+  const Pipeline pipeline = makeRectanglePipeline(device_, shaders::display, std::array{Texture::kFormat},
+                                                  {std::uint32_t(look.toneMap), look.background ? 1u : 0u});
+  const std::array<Binding, 2> bindings{&image, &srgb_};
   commands.beginPass("display");
-  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kComputeStage);
-  commands.dispatch(pipeline_, bindings, push, {image.size(), 1});
-  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kComputeStage, kFragment);
+  commands.makeRoomForPixels(std::uint64_t(image.size().x) * std::uint64_t(image.size().y));
+  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kOutput);
+  drawRectangle(commands, pipeline, bindings, &push, sizeof(push), std::array{shown.view()}, {0, 0}, image.size());
+  commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kOutput, kFragment);
 }
 
 RenderTarget uploadImage(const Device& device, const Image& image) {

@@ -2,13 +2,13 @@
 // A frame's image as a window shows it, without the host.
 
 #include "engine/image/image.h"
+#include "engine/vulkan/buffer.h"
 #include "engine/vulkan/commands.h"
-#include "engine/vulkan/pipeline.h"
 #include "engine/vulkan/texture.h"
 
 namespace freevoxels {
 
-/// COMPUTE display.comp: exposure, tone map, background and sRGB, in a texture that has the bytes of srgbTexels().
+/// GRAPHICS display.frag: exposure, tone map, background and sRGB, in a texture that has the bytes of srgbTexels().
 class DisplayPass {
  public:
   explicit DisplayPass(const Device& device);
@@ -18,8 +18,8 @@ class DisplayPass {
   void record(Commands& commands, const RenderTarget& image, const DisplayLook& look, const Texture& shown) const;
 
  private:
-  Pipeline pipeline_;
-  Buffer srgb_;  ///< shader::SrgbBucket
+  const Device& device_;
+  Buffer srgb_;  ///< srgbBuckets()
 };
 
 /// An image of the host for such a pass. Waits.

@@ -30,20 +30,20 @@ std::uint32_t firstAbove(std::uint8_t byte, std::uint32_t low, std::uint32_t hig
 /// The sRGB byte of every linear value, exactly as the curve gives it. The values of a bucket share their exponent and the first bits of
 /// their mantissa. The curve rises by at most 78 bytes an octave (at 1), so that none of the 128 buckets of an octave contains more than
 /// one step from a byte to the next.
-std::array<shader::SrgbBucket, kBuckets> makeBuckets() {
-  std::array<shader::SrgbBucket, kBuckets> buckets;
+std::array<std::uint32_t, kBuckets> makeBuckets() {
+  std::array<std::uint32_t, kBuckets> buckets;
   for (std::uint32_t i = 0; i < kBuckets; ++i) {
     const std::uint32_t low = shader::kSrgbFirstBits + (i << shader::kSrgbDroppedBits), high = low + (1u << shader::kSrgbDroppedBits);
     const std::uint8_t byte = exactByte(low);
-    buckets[i] = {std::bit_cast<float>(firstAbove(byte, low, high)), byte};
+    buckets[i] = (std::uint32_t(byte) << shader::kSrgbByteShift) + (firstAbove(byte, low, high) - low);
   }
   return buckets;
 }
 
 }  // namespace
 
-std::span<const shader::SrgbBucket> srgbBuckets() {
-  static const std::array<shader::SrgbBucket, kBuckets> buckets = makeBuckets();
+std::span<const std::uint32_t> srgbBuckets() {
+  static const std::array<std::uint32_t, kBuckets> buckets = makeBuckets();
   return buckets;
 }
 

@@ -32,15 +32,16 @@ inline std::uint8_t byteFromUnit(float unit) {
 }
 
 /// The table of srgbByteFromLinear, for shaders too; display_interface.h describes its layout.
-std::span<const shader::SrgbBucket> srgbBuckets();
+std::span<const std::uint32_t> srgbBuckets();
 
 /// Equals byteFromUnit(srgbFromLinear(linear)) for 0..1. `buckets` are srgbBuckets().
-inline std::uint8_t srgbByteFromLinear(std::span<const shader::SrgbBucket> buckets, float linear) {
+inline std::uint8_t srgbByteFromLinear(std::span<const std::uint32_t> buckets, float linear) {
   const auto bits = std::bit_cast<std::uint32_t>(linear);
   if (bits < shader::kSrgbFirstBits) return 0;
   if (bits >= shader::kSrgbEndBits) return 255;
-  const shader::SrgbBucket& bucket = buckets[(bits - shader::kSrgbFirstBits) >> shader::kSrgbDroppedBits];
-  return std::uint8_t(bucket.byte + std::uint32_t(linear >= bucket.next));
+  const std::uint32_t bucket = buckets[(bits - shader::kSrgbFirstBits) >> shader::kSrgbDroppedBits];
+  const bool isNext = (bits & shader::kSrgbDroppedMask) >= (bucket & shader::kSrgbNextMask);
+  return std::uint8_t((bucket >> shader::kSrgbByteShift) + std::uint32_t(isNext));
 }
 inline std::uint8_t srgbByteFromLinear(float linear) {
   return srgbByteFromLinear(srgbBuckets(), linear);

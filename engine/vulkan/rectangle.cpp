@@ -31,13 +31,11 @@ Pipeline makeRectanglePipeline(const Device& device, const Shader& fragment, std
 }
 
 void drawRectangle(Commands& commands, const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes,
-                   std::span<const RenderTarget* const> images, glm::ivec2 first, glm::ivec2 extent) {
+                   std::span<const VkImageView> images, glm::ivec2 first, glm::ivec2 extent) {
   FV_CHECK_LT(0, std::min(extent.x, extent.y));
-  std::vector<VkImageView> views;
-  for (const RenderTarget* image : images) views.push_back(image->view());
   const VkRect2D area{{first.x, first.y}, {std::uint32_t(extent.x), std::uint32_t(extent.y)}};
   const VkViewport viewport{float(first.x), float(first.y), float(extent.x), float(extent.y), 0.0f, 1.0f};
-  beginRendering(commands, views, VK_IMAGE_LAYOUT_GENERAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, area);
+  beginRendering(commands, images, VK_IMAGE_LAYOUT_GENERAL, VK_ATTACHMENT_LOAD_OP_DONT_CARE, area);
   vkCmdSetViewport(commands.handle(), 0, 1, &viewport);
   vkCmdSetScissor(commands.handle(), 0, 1, &area);
   commands.bind(pipeline, bindings, push, pushBytes);

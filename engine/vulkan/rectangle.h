@@ -4,7 +4,6 @@
 #include <span>
 
 #include "engine/vulkan/commands.h"
-#include "engine/vulkan/image.h"
 #include "engine/vulkan/pipeline.h"
 
 namespace freevoxels {
@@ -17,9 +16,9 @@ Pipeline makeRectanglePipeline(const Device& device, const Shader& fragment, std
                                const Specialisation& constants = {});
 
 /// Records a draw of the pixels from `first` to `first` + `extent`, which is not empty and inside of all images; others stay as they are.
-/// The images are in layout GENERAL and stay in it. Barriers are the caller's: COLOR_ATTACHMENT_OUTPUT writes the pixels. `push` points to
-/// the pipeline's push constants.
+/// `images` are views of them; they are in layout GENERAL and stay in it. Barriers are the caller's: COLOR_ATTACHMENT_OUTPUT writes the
+/// pixels. `push` points to the pipeline's push constants.
 void drawRectangle(Commands& commands, const Pipeline& pipeline, std::span<const Binding> bindings, const void* push, std::size_t pushBytes,
-                   std::span<const RenderTarget* const> images, glm::ivec2 first, glm::ivec2 extent);
+                   std::span<const VkImageView> images, glm::ivec2 first, glm::ivec2 extent);
 
 }  // namespace freevoxels

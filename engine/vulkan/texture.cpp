@@ -19,10 +19,10 @@ Texture::Texture(const Device& device, glm::ivec2 size, const char* name) : size
   if (std::uint32_t(size.x) > most || std::uint32_t(size.y) > most)
     fail(ErrorKind::OutOfMemory, "{} takes no image of {}x{} pixels, only up to {} along an edge",
          device.description().name, size.x, size.y, most);
-  ImageParts parts = makeImageParts(device, size, VK_FORMAT_R8G8B8A8_UNORM,
-                                    VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_STORAGE_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT |
-                                        VK_IMAGE_USAGE_TRANSFER_DST_BIT,
-                                    name);
+  ImageParts parts = makeImageParts(
+      device, size, kFormat,
+      VK_IMAGE_USAGE_SAMPLED_BIT | VK_IMAGE_USAGE_COLOR_ATTACHMENT_BIT | VK_IMAGE_USAGE_TRANSFER_SRC_BIT | VK_IMAGE_USAGE_TRANSFER_DST_BIT,
+      name);
   memory_ = std::move(parts.memory);
   image_ = std::move(parts.image);
   view_ = std::move(parts.view);

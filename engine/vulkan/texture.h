@@ -12,9 +12,11 @@
 namespace freevoxels {
 
 /// An 8-bit RGBA image without colour conversion, with linear filtering and clamping to the edge. Sampled in
-/// layout SHADER_READ_ONLY_OPTIMAL, written by compute shaders in GENERAL.
+/// layout SHADER_READ_ONLY_OPTIMAL, drawn into in GENERAL.
 class Texture {
  public:
+  static constexpr VkFormat kFormat = VK_FORMAT_R8G8B8A8_UNORM;
+
   Texture() = default;
   Texture(const Device& device, glm::ivec2 size, const char* name);
 
