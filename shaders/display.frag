@@ -2,16 +2,18 @@
 // A frame's image as the bytes that a PNG of it has: exposure, tone map, background and sRGB. The same arithmetic as in
 // engine/image/display.cpp, operation by operation.
 #extension GL_GOOGLE_include_directive : require
-#extension GL_EXT_samplerless_texture_functions : require
 #include "display_interface.h"
 
 layout(constant_id = 0) const int kToneMap = kToneMapNone;
 layout(constant_id = 1) const bool kHasBackground = false;
 
-layout(scalar, push_constant) uniform Push { DisplayPush push; };
-layout(binding = 0) uniform texture2D image;  // linear, premultiplied
+layout(binding = 0, rgba32f) readonly uniform image2D image;  // linear, premultiplied
 layout(scalar, binding = 1) readonly buffer Srgb { uint buckets[]; };
-layout(location = 0) out vec4 shown;          // sRGB, straight alpha
+// Of display.vert.
+layout(location = 0) flat in vec2 gainHeight;
+layout(location = 1) flat in vec3 top;
+layout(location = 2) flat in vec3 bottom;
+layout(location = 0) out vec4 shown;  // sRGB, straight alpha
 
 float filmicCurve(float x) {
   precise const float curve = (x * (0.15 * x + 0.05) + 0.004) / (x * (0.15 * x + 0.5) + 0.06) - 0.02 / 0.3;
@@ -42,19 +44,20 @@ float srgbUnit(float linear) {
 
 void main() {
   const ivec2 pixel = ivec2(gl_FragCoord.xy);
-  const vec4 light = texelFetch(image, pixel, 0);
-  precise const float down = (float(pixel.y) + 0.5) / float(push.height);
+  const vec4 light = imageLoad(image, pixel);
+  precise const float down = (float(pixel.y) + 0.5) / gainHeight.y;
+  const float gain = gainHeight.x;
   vec3 mapped;
-  for (int c = 0; c < 3; ++c) mapped[c] = toneMapped(push.gain * light[c]);
+  for (int c = 0; c < 3; ++c) mapped[c] = toneMapped(gain * light[c]);
   float most = light.a;
   for (int c = 0; c < 3; ++c)
     if (!kHasBackground && light[c] > most) most = light[c];  // not by max(), which may return NaN
-  precise const float excess = push.gain * (most - light.a);
+  precise const float excess = gain * (most - light.a);
   precise const float needed = light.a + excess;
-  const float alpha = clampUnit(push.gain == 1.0 ? most : needed);
+  const float alpha = clampUnit(gain == 1.0 ? most : needed);
   vec4 result = vec4(0.0, 0.0, 0.0, kHasBackground ? 1.0 : alpha);
   for (int c = 0; c < 3; ++c) {
-    precise const float behind = push.top[c] * (1.0 - down) + push.bottom[c] * down;
+    precise const float behind = top[c] * (1.0 - down) + bottom[c] * down;
     precise const float composited = mapped[c] + (1.0 - alpha) * behind;
     precise const float straight = alpha > 0.0 ? mapped[c] / alpha : 0.0;
     result[c] = srgbUnit(clampUnit(kHasBackground ? composited : straight));

@@ -116,9 +116,31 @@ struct SampleListHead {
   uint count;
 };
 
-// gather_resample.frag
+// Tiles of the samples that are seen, from the first one on. The image is drawn from those that hold anything and those beside them.
+FV_CONSTANT int kLatticeTile = 16;         // samples along an edge, a multiple of kGatherTile
+FV_CONSTANT int kTilesOfARange = 1 << 12;  // tiles of an indirect dispatch over the list
+
+struct DrawSize {  // as VkDrawIndirectCommand
+  uint vertices, instances, firstVertex, firstInstance;
+};
+
+// Of an entry of the list of tiles: whether the tiles beside it are listed, too, and above these bits the number of the tile.
+FV_CONSTANT uint kLeftIsListed = 1u;
+FV_CONSTANT uint kRightIsListed = 2u;
+FV_CONSTANT uint kUpperIsListed = 4u;
+FV_CONSTANT uint kLowerIsListed = 8u;
+FV_CONSTANT int kTileShift = 4;
+
+// gather_stencil.comp
+struct TilesPush {
+  int firstOfRange;  // first entry of the list of the tiles
+};
+
+// gather_tiles.vert, gather_resample.frag
 struct ResamplePush {
-  int firstRow;  // the row of the lattice that is row 0 of the image of rows
+  int firstRow, endRow;      // rows of the lattice that the image of rows holds, the first one as its row 0
+  int firstPixel, endPixel;  // rows of pixels that are drawn of these
+  ivec2 target;              // size of the image that is drawn into
 };
 
 // Which samples of the lattice a dispatch of gather.comp marches.

@@ -1,25 +1,27 @@
 #version 460
 // Makes pixels of the lattice's sums along one axis of the image: first along x, to rows of the lattice with the image's width, then along
 // y into the image (ALONG_Y). A pixel is the mean over its width of the Catmull-Rom interpolation, by Simpson's rule; with a holdout, whose
-// edges lie between pixels, the mean of its own samples. Both steps are drawn: lavapipe stores what a fragment has in a third of the time
-// that a compute shader's stores take.
+// edges lie between pixels, the mean of its own samples. Both steps are drawn, in listed tiles (gather_tiles.vert): lavapipe stores what a
+// fragment has in a third of the time that a compute shader's stores take.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "catmull_rom.glsl"
-#include "gather_frame.glsl"
 #include "mean_distance.glsl"
 
 layout(constant_id = 0) const int kTaps = kResampleTaps;
 layout(constant_id = 1) const int kRaysOfPixel = 0;  // GatherFrame::raysOfPixel
 
-layout(scalar, push_constant) uniform Push { ResamplePush push; };
+// Of gather_tiles.vert.
+layout(location = 0) flat in float pitch;
+layout(location = 1) flat in ivec2 stored;
+layout(location = 2) flat in ivec2 row;
 #ifdef ALONG_Y
-layout(binding = 1) uniform texture2D colorEnergy;      // of rows from push.firstRow on
-layout(binding = 2) uniform texture2D distances;
+layout(binding = 1, rgba32f) readonly uniform image2D colorEnergy;  // of rows from row.x on
+layout(binding = 2, r32f) readonly uniform image2D distances;
 const int kAlong = 1;
 #else
-layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
-layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
+layout(binding = 1, rgba32f) readonly uniform imageBuffer colorEnergy;  // C, E
+layout(binding = 2, r32f) readonly uniform imageBuffer distances;       // sum of e times distance
 const int kAlong = 0;
 #endif
 layout(location = 0) out vec4 colorOut;
@@ -33,9 +35,9 @@ int weightsOf(int pixel, out float weights[kTaps]) {
     [[unroll]] for (int i = 0; i < kTaps; ++i) weights[i] = i < kRaysOfPixel ? 1.0 / float(kRaysOfPixel) : 0.0;
     return kLatticeMargin + pixel * kRaysOfPixel;
   }
-  const float halfPixel = 0.5 / frame.pitch;
-  const float before = floor(float(pixel) / frame.pitch);  // samples between the first pixel and this one
-  const float middle = (float(pixel) - before * frame.pitch) / frame.pitch, lowest = floor(middle - halfPixel);
+  const float halfPixel = 0.5 / pitch;
+  const float before = floor(float(pixel) / pitch);  // samples between the first pixel and this one
+  const float middle = (float(pixel) - before * pitch) / pitch, lowest = floor(middle - halfPixel);
   [[unroll]] for (int i = 0; i < kTaps; ++i) weights[i] = 0.0;
   [[unroll]] for (int k = -1; k <= 1; ++k) {
     // At most that of the last weights, whatever a division rounds to: the interpolation is continuous.
@@ -52,18 +54,18 @@ int weightsOf(int pixel, out float weights[kTaps]) {
 // Of a sample of the lattice, or of a pixel in a row of it.
 vec4 colorEnergyAt(ivec2 at) {
 #ifdef ALONG_Y
-  return texelFetch(colorEnergy, at - ivec2(0, push.firstRow), 0);
+  return imageLoad(colorEnergy, at - ivec2(0, row.x));
 #else
-  return texelFetch(colorEnergy, at.x + at.y * frame.samples.x);
+  return imageLoad(colorEnergy, at.x + at.y * row.y);
 #endif
 }
 
 #ifdef WITH_DISTANCE
 float distanceAt(ivec2 at) {
 #ifdef ALONG_Y
-  return texelFetch(distances, at - ivec2(0, push.firstRow), 0).x;
+  return imageLoad(distances, at - ivec2(0, row.x)).x;
 #else
-  return texelFetch(distances, at.x + at.y * frame.samples.x).x;
+  return imageLoad(distances, at.x + at.y * row.y).x;
 #endif
 }
 #endif
@@ -81,14 +83,14 @@ void resolvePixel(vec4 color, float distance) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
 #ifndef ALONG_Y
-  at.y += push.firstRow;
+  at.y += row.x;
 #endif
   float weights[kTaps];
-  const int first = weightsOf(at[kAlong], weights), last = frame.firstSeen[kAlong] + frame.seenExtent[kAlong] - 1;
+  const int first = weightsOf(at[kAlong], weights);
   vec4 color = vec4(0.0);
   MeanDistance mean = kNoDistance;
   [[unroll]] for (int i = 0; i < kTaps; ++i) {
-    at[kAlong] = clamp(first + i, frame.firstSeen[kAlong], last);
+    at[kAlong] = clamp(first + i, stored.x, stored.y);
     const vec4 texel = colorEnergyAt(at);
     color += weights[i] * texel;
 #ifdef WITH_DISTANCE

@@ -2,10 +2,11 @@
 // Restores the round footprint of the lattice's sums: a slice's tent is as wide as a splat's kernel across
 // the slice, but seen obliquely it is narrower along the tilt. A stencil of 3x3 samples adds the missing
 // variance, at the mean distance of what the sample shows. It is not applied to interpolated scalars, which
-// have no footprints.
+// have no footprints. Of the lattice only listed tiles are stored.
 #extension GL_GOOGLE_include_directive : require
 #extension GL_EXT_samplerless_texture_functions : require
 #include "gather_ray.glsl"
+#include "lattice_tiles.glsl"
 #include "mean_distance.glsl"
 #include "opacity.glsl"
 
@@ -14,6 +15,10 @@ layout(binding = 1) uniform textureBuffer colorEnergy;  // C, E
 layout(binding = 2) uniform textureBuffer distances;    // sum of e times distance
 layout(binding = 3, rgba32f) writeonly uniform imageBuffer colorEnergyOut;
 layout(binding = 4, r32f) writeonly uniform imageBuffer distancesOut;
+layout(scalar, binding = 5) readonly buffer List { uint tiles[]; };
+layout(scalar, push_constant) uniform Push { TilesPush push; };
+
+const int kGroupsOfATile = kLatticeTile / kGatherTile;  // along an edge
 
 // The covariance (xx, xy, yy) that the sums lack, in squares of the lattice's pitch.
 vec3 missingCovariance(vec3 position, float distance) {
@@ -26,8 +31,10 @@ vec3 missingCovariance(vec3 position, float distance) {
 }
 
 void main() {
-  if (any(greaterThanEqual(ivec2(gl_GlobalInvocationID.xy), frame.seenExtent))) return;
-  const ivec2 index = frame.firstSeen + ivec2(gl_GlobalInvocationID.xy);
+  const uint entry = tiles[push.firstOfRange + gl_WorkGroupID.y];
+  const ivec2 group = ivec2(gl_WorkGroupID.x % kGroupsOfATile, gl_WorkGroupID.x / kGroupsOfATile);
+  const ivec2 index = firstOfTile(int(entry >> kTileShift)) + group * kGatherTile + ivec2(gl_LocalInvocationID.xy);
+  if (any(greaterThanEqual(index, frame.firstSeen + frame.seenExtent))) return;
   vec4 colors[9];
   float weighted[9];
   [[unroll]] for (int i = 0; i < 9; ++i) {

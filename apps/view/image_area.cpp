@@ -194,7 +194,7 @@ void ImageArea::draw(ViewState& state, const ShownTextures& textures) {
   moves_ = false;
   if (room.x < 1.0f || room.y < 1.0f) return;
   const ImageFrame frame{low, {low.x + room.x, low.y + room.y}};
-  drawTextures(textures, state.split, state.look().background.has_value(), frame);
+  drawTextures(textures, state.split, textures.isOpaque && state.look().background.has_value(), frame);
   constexpr ImGuiButtonFlags kAnyButton = ImGuiButtonFlags_MouseButtonLeft |
                                           ImGuiButtonFlags_MouseButtonMiddle |
                                           ImGuiButtonFlags_MouseButtonRight;

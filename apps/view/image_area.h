@@ -16,6 +16,7 @@ struct ShownTextures {
   const Texture* before = nullptr;    ///< the image before, which `image` replaces gradually
   const Texture* compared = nullptr;  ///< shown right of ViewState::split
   float weight = 1.0f;                ///< of `image` over `before`
+  bool isOpaque = false;              ///< whether they were made with a background
 };
 
 class ImageArea {

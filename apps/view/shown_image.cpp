@@ -22,7 +22,10 @@ void ShownImage::show(std::shared_ptr<const DrawnImage> drawn, bool fades) {
     if (drawn_->compared) movedCompared_ = devices_.moved(*drawn_->compared);
   }
   before_ = nullptr;
-  if (fades && texture_) before_ = std::move(texture_);
+  if (fades && texture_) {
+    before_ = std::move(texture_);
+    beforeIsOpaque_ = isOpaque_;
+  }
   since_ = Clock::now();
   makeTexture(devices_.showing(), texture_, drawn_->shown->size());
   if (drawn_->compared)
@@ -31,8 +34,9 @@ void ShownImage::show(std::shared_ptr<const DrawnImage> drawn, bool fades) {
     compared_ = nullptr;
 }
 
-void ShownImage::record(Commands& commands, const DisplayLook& look) const {
+void ShownImage::record(Commands& commands, const DisplayLook& look) {
   if (!isNew_) return;
+  isOpaque_ = look.background.has_value();
   display_.record(commands, devices_.areOne() ? *drawn_->shown : moved_, look, *texture_);
   if (compared_) display_.record(commands, devices_.areOne() ? *drawn_->compared : movedCompared_, look, *compared_);
 }
@@ -51,7 +55,8 @@ ShownTextures ShownImage::textures() const {
   return {.image = texture_.get(),
           .before = fades() ? before_.get() : nullptr,
           .compared = compared_.get(),
-          .weight = since / std::chrono::duration<float>(kFade)};
+          .weight = since / std::chrono::duration<float>(kFade),
+          .isOpaque = isOpaque_ && (!fades() || beforeIsOpaque_)};
 }
 
 }  // namespace freevoxels

@@ -21,7 +21,7 @@ class ShownImage {
   /// Makes the textures again, for another look.
   void retone() { isNew_ = drawn_ != nullptr; }
   /// Before what shows the textures: makes those that are not made yet.
-  void record(Commands& commands, const DisplayLook& look) const;
+  void record(Commands& commands, const DisplayLook& look);
   /// To be called when the window has been painted.
   void painted();
 
@@ -40,6 +40,7 @@ class ShownImage {
   std::unique_ptr<Texture> texture_, before_, compared_;
   Clock::time_point since_;
   bool isNew_ = false;
+  bool isOpaque_ = false, beforeIsOpaque_ = false;  ///< whether the textures have a background
 };
 
 }  // namespace freevoxels

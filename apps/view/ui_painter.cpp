@@ -7,7 +7,7 @@
 #include "embedded/ui_fragment.h"
 #include "embedded/ui_vertex.h"
 #include "engine/core/error.h"
-#include "engine/vulkan/rectangle.h"
+#include "engine/vulkan/rendering.h"
 #include "shaders/ui_interface.h"
 
 namespace freevoxels {

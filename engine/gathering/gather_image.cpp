@@ -3,14 +3,21 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
 #include <span>
 
+#include "embedded/gather_empty.h"
+#include "embedded/gather_empty_distance.h"
 #include "embedded/gather_pixels.h"
 #include "embedded/gather_pixels_distance.h"
+#include "embedded/gather_pixels_tiles.h"
 #include "embedded/gather_rows.h"
 #include "embedded/gather_rows_distance.h"
+#include "embedded/gather_rows_tiles.h"
+#include "embedded/rectangle.h"
 #include "engine/core/error.h"
-#include "engine/vulkan/rectangle.h"
+#include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/rendering.h"
 
 namespace freevoxels {
 
@@ -65,34 +72,57 @@ void GatherImage::makeRoom(glm::ivec2 size, bool withDistance) {
 void GatherImage::record(Commands& commands, const Buffer& frameBuffer, const shader::GatherFrame& frame, const Sums& sums,
                          const FrameTargets& targets) {
   const bool withDistance = targets.distance.exists();
-  if (frame.pixelExtent.x <= 0 || frame.pixelExtent.y <= 0 || frame.seenExtent.y <= 0) return;
+  constexpr std::array kFormats{kTargetColorFormat, kTargetScalarFormat};
+  if (std::min(frame.pixelExtent.x, frame.pixelExtent.y) <= 0) {
+    for (const RenderTarget* target : targets.all())
+      commands.fill(*target, target == &targets.distance ? std::numeric_limits<float>::infinity() : 0.0f);
+    return;
+  }
   makeRoom(sizeOfRows(frame), withDistance);
   const std::uint32_t count = withDistance ? 2 : 1, taps = frame.pitch >= 1.0f ? shader::kSparseResampleTaps : shader::kResampleTaps;
   const std::array<const RenderTarget*, 2> rows{&rowColors_, &rowDistances_}, pixels{&targets.colorEnergy, &targets.distance};
-  constexpr std::array kFormats{kTargetColorFormat, kTargetScalarFormat};
-  const auto pipeline = [&](const Shader& shader) {
-    return makeRectanglePipeline(device_, shader, std::span(kFormats).first(count), {taps, std::uint32_t(frame.raysOfPixel)});
+  const auto pipeline = [&](const Shader& vertex, const Shader& fragment, const Specialisation& constants) {
+    return makeGraphicsPipeline(device_, vertex, fragment, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST, std::span(kFormats).first(count),
+                                Blend::Replace, constants);
   };
-  const Pipeline drawRows = pipeline(withDistance ? shaders::gather_rows_distance : shaders::gather_rows);
-  const Pipeline drawPixels = pipeline(withDistance ? shaders::gather_pixels_distance : shaders::gather_pixels);
-  const std::array<Binding, 3> samples{&frameBuffer, &sums.colorEnergy, &sums.distances}, ofRows{&frameBuffer, rows[0], rows[count - 1]};
-  const auto draw = [&](const Pipeline& pass, std::span<const Binding> bindings, const shader::ResamplePush& push,
-                        std::span<const RenderTarget* const> images, glm::ivec2 first, glm::ivec2 extent) {
+  const Specialisation constants{taps, std::uint32_t(frame.raysOfPixel)};
+  const Pipeline empty = pipeline(shaders::rectangle, withDistance ? shaders::gather_empty_distance : shaders::gather_empty, {});
+  const Pipeline drawRows =
+      pipeline(shaders::gather_rows_tiles, withDistance ? shaders::gather_rows_distance : shaders::gather_rows, constants);
+  const Pipeline drawPixels =
+      pipeline(shaders::gather_pixels_tiles, withDistance ? shaders::gather_pixels_distance : shaders::gather_pixels, constants);
+  const Buffer& list = sums.tiles.list();
+  const std::array<Binding, 4> samples{&frameBuffer, &sums.colorEnergy, &sums.distances, &list},
+      ofRows{&frameBuffer, rows[0], rows[count - 1], &list};
+  // Draws the listed tiles of images of which `used` is used; elsewhere these stay as they are, or are empty.
+  const auto draw = [&](const Pipeline& pass, std::span<const Binding> bindings, shader::ResamplePush push,
+                        std::span<const RenderTarget* const> images, glm::ivec2 used, bool isFirst) {
+    push.target = used;
     const std::array views{images[0]->view(), images[1]->view()};
-    drawRectangle(commands, pass, bindings, &push, sizeof(push), std::span(views).first(count), first, extent);
+    beginRendering(commands, std::span(views).first(count), used, isFirst ? VK_ATTACHMENT_LOAD_OP_DONT_CARE : VK_ATTACHMENT_LOAD_OP_LOAD);
+    if (isFirst) {
+      commands.bind(empty, {}, nullptr, 0);
+      vkCmdDraw(commands.handle(), 3, 1, 0, 0);
+    }
+    commands.bind(pass, bindings, &push, sizeof(push));
+    sums.tiles.draw(commands);
+    vkCmdEndRendering(commands.handle());
   };
+  for (const RenderTarget* target : targets.all())
+    commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT, kOutput);
   commands.barrier(VK_PIPELINE_STAGE_2_COMPUTE_SHADER_BIT, kFragment);
-  for (int first = frame.firstPixel.y, end = frame.firstPixel.y + frame.pixelExtent.y, next = 0; first < end; first = next) {
+  const int begin = frame.firstPixel.y, end = frame.firstPixel.y + frame.pixelExtent.y;
+  for (int first = begin, next = 0; first < end; first = next) {
     next = std::min(first + pixelsOfBand(frame), end);
     const glm::ivec2 band = rowsOf(frame, first, next);
     FV_CHECK_LE(band.y - band.x, kBandRows);
-    const shader::ResamplePush push{.firstRow = band.x};
+    const shader::ResamplePush push{.firstRow = band.x, .endRow = band.y, .firstPixel = first, .endPixel = next};
     commands.makeRoomForPixels(std::uint64_t(frame.pixelExtent.x) * std::uint64_t(band.y - band.x + next - first));
     for (std::uint32_t i = 0; i < count; ++i)
       commands.transition(*rows[i], VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kOutput);
-    draw(drawRows, samples, push, rows, {frame.firstPixel.x, 0}, {frame.pixelExtent.x, band.y - band.x});
-    commands.barrier(kOutput, kFragment);
-    draw(drawPixels, ofRows, push, pixels, {frame.firstPixel.x, first}, {frame.pixelExtent.x, next - first});
+    draw(drawRows, samples, push, rows, {frame.size.x, band.y - band.x}, true);
+    commands.barrier(kOutput, kFragment | kOutput);  // the rows are read, and the pixels of the band before are loaded
+    draw(drawPixels, ofRows, push, pixels, frame.size, first == begin);
   }
   commands.barrier(kOutput, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT);
 }

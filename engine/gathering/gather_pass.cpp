@@ -2,7 +2,6 @@
 
 #include <algorithm>
 #include <array>
-#include <limits>
 #include <span>
 #include <utility>
 
@@ -76,6 +75,7 @@ GatherPass::GatherPass(const Device& device)
       frame_(device, sizeof(shader::GatherFrame), MemoryUse::Device, "gather frame", VK_BUFFER_USAGE_UNIFORM_BUFFER_BIT),
       noLight_(device, sizeof(glm::vec4), MemoryUse::Device, "no scattered light", VK_BUFFER_USAGE_UNIFORM_TEXEL_BUFFER_BIT),
       noLightTexels_(device, noLight_),
+      tiles_(device),
       image_(device) {}
 
 void GatherPass::compileAhead(const Device& device, const GatherVolume& volume, const std::array<bool, 3>& axes, Rays rays) {
@@ -266,14 +266,17 @@ std::vector<Binding> GatherPass::sumBindings(const Sums& from, const Sums& to) c
 
 void GatherPass::recordStencil(Commands& commands, const shader::GatherFrame& frame) {
   makeRoom(smoothed_, latticeSize(frame));
-  commands.dispatch(makeComputePipeline(device_, shaders::gather_stencil, {}), sumBindings(gathered_, smoothed_),
-                    glm::ivec3(frame.seenExtent, 1));
+  tiles_.record(commands, frame_, frame, gathered_.colorEnergyTexels);
+  std::vector<Binding> bindings = sumBindings(gathered_, smoothed_);
+  bindings.emplace_back(&tiles_.list());
+  tiles_.dispatch(commands, makeComputePipeline(device_, shaders::gather_stencil, {}), bindings);
   commands.barrier(kComputeStage, kComputeStage);
 }
 
 void GatherPass::recordResampling(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   const Sums& samples = scalars ? gathered_ : smoothed_;
-  image_.record(commands, frame_, frame, {samples.colorEnergyTexels, samples.distanceTexels}, targets);
+  if (scalars) tiles_.record(commands, frame_, frame, gathered_.colorEnergyTexels);
+  image_.record(commands, frame_, frame, {samples.colorEnergyTexels, samples.distanceTexels, tiles_}, targets);
 }
 
 void GatherPass::record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame, const FrameTargets& targets) {
@@ -290,14 +293,6 @@ void GatherPass::recordImage(Commands& commands, const shader::GatherFrame& fram
 
 void GatherPass::recordPixels(Commands& commands, const shader::GatherFrame& frame, bool scalars, const FrameTargets& targets) {
   commands.beginPass("gather image");
-  // Pixels that do not see the volume are empty, without a distance.
-  for (const RenderTarget* target : targets.all()) {
-    if (frame.pixelExtent == frame.size)
-      commands.transition(*target, VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, VK_PIPELINE_STAGE_2_ALL_COMMANDS_BIT,
-                          VK_PIPELINE_STAGE_2_COLOR_ATTACHMENT_OUTPUT_BIT);
-    else
-      commands.fill(*target, target == &targets.distance ? std::numeric_limits<float>::infinity() : 0.0f);
-  }
   const bool hasStencil = !scalars && frame.raysOfPixel == 0;
   if (hasStencil) recordStencil(commands, frame);
   recordResampling(commands, frame, !hasStencil, targets);
@@ -321,6 +316,18 @@ std::vector<GatherSums> GatherPass::download(const Sums& sums, glm::ivec2 rows) 
           .color = glm::dvec3(colorEnergy[i]), .energy = double(colorEnergy[i].a), .distance = double(distances[i])};
     }
   return result;
+}
+
+std::vector<GatherSums> GatherPass::downloadSmoothed() const {
+  std::vector<GatherSums> sums = download(smoothed_, {0, lattice_.samples.y});
+  const std::vector<bool> isListed = tiles_.download();
+  const int columns = GatherTiles::extent(seen_.extent).x;
+  for (int y = 0; y < seen_.extent.y; ++y)
+    for (int x = 0; x < seen_.extent.x; ++x) {
+      const glm::ivec2 tile = glm::ivec2(x, y) / shader::kLatticeTile, sample = seen_.first + glm::ivec2(x, y);
+      if (!isListed[std::size_t(tile.x + tile.y * columns)]) sums[std::size_t(sample.x + sample.y * lattice_.samples.x)] = {};
+    }
+  return sums;
 }
 
 }  // namespace freevoxels

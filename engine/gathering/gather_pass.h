@@ -18,8 +18,8 @@
 namespace freevoxels {
 
 /// COMPUTE gather.comp, gather_roughness.comp, gather_refine.comp, gather_list_offsets.comp, gather_list.comp and gather_stencil.comp, and
-/// GatherImage: premultiplied RGBA in `targets.colorEnergy` and the mean distance in `targets.distance`, if that exists. Leaves the targets
-/// in layout GENERAL, visible to later commands.
+/// GatherTiles and GatherImage: premultiplied RGBA in `targets.colorEnergy` and the mean distance in `targets.distance`, if that exists.
+/// Leaves the targets in layout GENERAL, visible to later commands.
 class GatherPass {
  public:
   explicit GatherPass(const Device& device);
@@ -43,7 +43,7 @@ class GatherPass {
   void record(Commands& commands, const GatherVolume& volume, const shader::GatherFrame& frame,
               const FrameTargets& targets);
 
-  // The steps of record(), for parts of a frame and for tests that alter what lies between them. The targets have to be in layout GENERAL.
+  // The steps of record(), for parts of a frame and for tests that alter what lies between them.
 
   /// Allocates the sums, and writes the frame that the steps after it read.
   void begin(Commands& commands, const shader::GatherFrame& frame);
@@ -75,6 +75,7 @@ class GatherPass {
   const TexelView& colorEnergyTexels() const { return gathered_.colorEnergyTexels; }
   const TexelView& distanceTexels() const { return gathered_.distanceTexels; }
   const Buffer& frameBuffer() const { return frame_; }
+  /// Of the tiles that the image is drawn of.
   void recordStencil(Commands& commands, const shader::GatherFrame& frame);
 
   // A volume that is on the device cube by cube: first recordClear, then recordCube for one after the other, in the order in which rays
@@ -94,7 +95,7 @@ class GatherPass {
   /// The lattice of the last frame, and its sums before and after the stencil; for validation and tests. The downloads wait.
   const GatherLattice& lattice() const { return lattice_; }
   std::vector<GatherSums> downloadGathered() const { return download(gathered_, {0, lattice_.samples.y}); }
-  std::vector<GatherSums> downloadSmoothed() const { return download(smoothed_, {0, lattice_.samples.y}); }
+  std::vector<GatherSums> downloadSmoothed() const;
 
  private:
   /// C and E (four floats), and the sum of e times distance, of every sample.
@@ -128,6 +129,7 @@ class GatherPass {
   Buffer noLight_;           ///< bound where a frame has no scattered light
   TexelView noLightTexels_;
   Sums gathered_, smoothed_;
+  GatherTiles tiles_;
   GatherImage image_;
   Adaptive adaptive_;
 };

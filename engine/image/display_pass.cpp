@@ -3,10 +3,12 @@
 #include <array>
 #include <cmath>
 
-#include "embedded/display.h"
+#include "embedded/display_fragment.h"
+#include "embedded/display_vertex.h"
 #include "engine/core/error.h"
 #include "engine/image/srgb.h"
-#include "engine/vulkan/rectangle.h"
+#include "engine/vulkan/pipeline.h"
+#include "engine/vulkan/rendering.h"
 
 namespace freevoxels {
 
@@ -28,13 +30,17 @@ void DisplayPass::record(Commands& commands, const RenderTarget& image, const Di
   const Background background = look.background.value_or(Background());
   const shader::DisplayPush push{
       .height = image.size().y, .gain = float(std::exp2(look.exposure)), .top = background.top, .bottom = background.bottom};
-  const Pipeline pipeline = makeRectanglePipeline(device_, shaders::display, std::array{Texture::kFormat},
-                                                  {std::uint32_t(look.toneMap), look.background ? 1u : 0u});
+  const Pipeline pipeline =
+      makeGraphicsPipeline(device_, shaders::display_vertex, shaders::display_fragment, VK_PRIMITIVE_TOPOLOGY_TRIANGLE_LIST,
+                           std::array{Texture::kFormat}, Blend::Replace, {std::uint32_t(look.toneMap), look.background ? 1u : 0u});
   const std::array<Binding, 2> bindings{&image, &srgb_};
   commands.beginPass("display");
   commands.makeRoomForPixels(std::uint64_t(image.size().x) * std::uint64_t(image.size().y));
   commands.transition(shown.handle(), VK_IMAGE_LAYOUT_UNDEFINED, VK_IMAGE_LAYOUT_GENERAL, kFragment, kOutput);
-  drawRectangle(commands, pipeline, bindings, &push, sizeof(push), std::array{shown.view()}, {0, 0}, image.size());
+  beginRendering(commands, std::array{shown.view()}, image.size(), VK_ATTACHMENT_LOAD_OP_DONT_CARE);
+  commands.bind(pipeline, bindings, &push, sizeof(push));
+  vkCmdDraw(commands.handle(), 3, 1, 0, 0);
+  vkCmdEndRendering(commands.handle());
   commands.transition(shown.handle(), VK_IMAGE_LAYOUT_GENERAL, VK_IMAGE_LAYOUT_SHADER_READ_ONLY_OPTIMAL, kOutput, kFragment);
 }
 

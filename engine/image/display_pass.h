@@ -8,7 +8,7 @@
 
 namespace freevoxels {
 
-/// GRAPHICS display.frag: exposure, tone map, background and sRGB, in a texture that has the bytes of srgbTexels().
+/// GRAPHICS display.vert, display.frag: exposure, tone map, background and sRGB, in a texture that has the bytes of srgbTexels().
 class DisplayPass {
  public:
   explicit DisplayPass(const Device& device);

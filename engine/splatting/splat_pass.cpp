@@ -12,7 +12,7 @@
 #include "embedded/splat_vertex.h"
 #include "engine/core/error.h"
 #include "engine/vulkan/commands.h"
-#include "engine/vulkan/rectangle.h"
+#include "engine/vulkan/rendering.h"
 
 namespace freevoxels {
 

@@ -154,10 +154,9 @@ void Commands::bind(const Pipeline& pipeline, std::span<const Binding> bindings,
     writes.push_back(write);
   }
   vkCmdBindPipeline(buffer_, pipeline.bindPoint(), pipeline.handle());
-  vkCmdPushDescriptorSetKHR(buffer_, pipeline.bindPoint(), pipeline.layout(), 0, std::uint32_t(writes.size()),
-                            writes.data());
-  if (pushBytes > 0)
-    vkCmdPushConstants(buffer_, pipeline.layout(), pipeline.stages(), 0, std::uint32_t(pushBytes), push);
+  if (!writes.empty())
+    vkCmdPushDescriptorSetKHR(buffer_, pipeline.bindPoint(), pipeline.layout(), 0, std::uint32_t(writes.size()), writes.data());
+  if (pushBytes > 0) vkCmdPushConstants(buffer_, pipeline.layout(), pipeline.stages(), 0, std::uint32_t(pushBytes), push);
 }
 
 void Commands::dispatchThreads(const Pipeline& pipeline, const std::function<void()>& bindAll, glm::ivec3 threads) {

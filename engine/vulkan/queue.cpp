@@ -1,5 +1,7 @@
 #include "engine/vulkan/queue.h"
 
+#include <algorithm>
+
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -111,7 +113,8 @@ double Queue::costOf(const std::string& pass, double otherwise) const {
 
 void Queue::setCost(const std::string& pass, double millisecondsPerUnit) {
   const std::lock_guard lock(mutex_);
-  costs_[pass] = millisecondsPerUnit;
+  double& cost = costs_[pass];
+  cost = std::max(millisecondsPerUnit, cost / 2.0);  // one frame that sees little does not make the slices of the next one too long
 }
 
 }  // namespace freevoxels

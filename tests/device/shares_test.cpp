@@ -1,6 +1,7 @@
 // Frames that are drawn share by share: the same bits for any number of processes, and the same image as one that is drawn at once.
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 #include "engine/image/metrics.h"
@@ -242,6 +243,34 @@ TEST_F(SharesTest, AHighImageIsThatOfItsSharesWhereverTheVolumeIs) {
       if (image.pixels[i].a > 0.01f) {
         EXPECT_NEAR(image.depth[i], shared.depth[i], 1e-3 * shared.depth[i]);
       }
+  }
+}
+
+/// A dozen voxels, of one after another view with the same renderer: most of an image is empty, and is not drawn.
+TEST_F(SharesTest, AnImageOfFewVoxelsIsThatOfItsShares) {
+  const glm::ivec3 size(50, 47, 53);
+  const Volume stars =
+      makeVolume(size, cubeTransform(size), [](int x, int y, int z) { return (31 * x + 1017 * y + 7 * z) % 9973 == 0 ? 1.0 : 0.0; });
+  const TransferFunction function{.opacity = {{0.0f, 0.0f}, {1.0f, 0.9f}}, .color = {{0.0f, {0.9f, 0.5f, 0.2f}}}, .unitDistance = 0.02};
+  for (const ClassificationOrder order : {ClassificationOrder::Pre, ClassificationOrder::Post}) {
+    Renderer renderer(device(), stars, {.transferFunction = function, .order = order}, {});
+    std::ptrdiff_t seen = 0;
+    for (int view = 0; view < 24; ++view) {
+      const double fov = std::array{4.0, 14.0, 35.0, 110.0}[std::size_t(view % 4)];  // samples from 8 pixels to half a pixel apart
+      const glm::ivec2 pixels = view % 3 == 0 ? glm::ivec2(97, 61) : glm::ivec2(203, 330);
+      SCOPED_TRACE(fmt::format("order {}, view {}", int(order), view));
+      Camera camera = framingCamera(stars, 15.0 * view, 5.0 * view - 60.0, 1.0, {});
+      camera.verticalFov = fov;
+      const FrameSettings settings{.size = pixels, .depth = true};
+      const Image image = renderer.render(camera, settings), shared = resolveSums(renderer.renderShares(camera, settings, {}), true);
+      EXPECT_LE(largestPixelDifference(image, shared), 2e-5);
+      for (std::size_t i = 0; i < image.depth.size(); ++i)
+        if (image.pixels[i].a > 0.01f) {
+          ++seen;
+          EXPECT_NEAR(image.depth[i], shared.depth[i], 1e-3 * shared.depth[i]);
+        }
+    }
+    EXPECT_GT(seen, 500);
   }
 }
 
