@@ -1,7 +1,5 @@
 #include "engine/vulkan/queue.h"
 
-#include <algorithm>
-
 #include "engine/vulkan/device.h"
 
 namespace freevoxels {
@@ -113,8 +111,7 @@ double Queue::costOf(const std::string& pass, double otherwise) const {
 
 void Queue::setCost(const std::string& pass, double millisecondsPerUnit) {
   const std::lock_guard lock(mutex_);
-  double& cost = costs_[pass];
-  cost = std::max(millisecondsPerUnit, cost / 2.0);  // one frame that sees little does not make the slices of the next one too long
+  costs_[pass] = millisecondsPerUnit;
 }
 
 }  // namespace freevoxels

@@ -53,8 +53,8 @@ class Queue {
   /// The number of the last complete submission.
   std::uint64_t completed() const;
 
-  /// The cost of passes of this name in milliseconds per unit of work (Commands::Span), as last measured, but at least half
-  /// of what it was before; `otherwise` if it is unknown.
+  /// The cost of passes of this name in milliseconds per unit of work (Commands::Span), as last measured, or `otherwise` if
+  /// it is unknown.
   double costOf(const std::string& pass, double otherwise) const;
   void setCost(const std::string& pass, double millisecondsPerUnit);
 
