@@ -295,6 +295,7 @@ void main() {
   const vec3 position = samplePosition(frame.firstSample, frame.pitch, index);
   const vec3 components = alongAxes(position);
   if (marchAxis(position, components) != kAxis) return;
+  keepFrame();
 
   SampleRay sampleRay;
   sampleRay.along = components[kAxis];

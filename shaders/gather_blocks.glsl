@@ -33,7 +33,7 @@ vec4 extinctionsOf(int quad) {
 // The interpolated source term and extinction.
 vec4 mediumAt(int quad, vec4 weights, vec4 extinctions, vec3 toEye) {
   const float extinction = dot(weights, extinctions);
-  return vec4(kColored ? sourceAt(quad, sourceQuad(quad), weights, toEye) : extinction * frame.color, extinction);
+  return vec4(kColored ? sourceAt(quad, sourceQuad(quad), weights, toEye) : extinction * kept.color, extinction);
 }
 
 // For classified blocks: source term and extinction are constant in a slice's layer.
@@ -144,7 +144,7 @@ void addBlockStretch(inout Sums sums, inout SliceValues last, LevelGeometry leve
     if (sums.transmittance * ray.layer * medium.a > kMinShaded) {
       findGradients(last, found, level, ray, slice);
       const vec3 gradient = 0.5 * (last.gradient + found.gradient);
-      const float reach = length(gradient) / frame.extinctionUnit;
+      const float reach = length(gradient) / kept.extinctionUnit;
       setSurface(lit, gradient, -min(2.0 * reach / max(medium.a + reach, 1e-20), 1.0));
       lightFrom(lit, outsideOf(level, ray, float(slice) - 0.5 * ray.direction, -gradient));
     }

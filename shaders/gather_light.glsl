@@ -25,7 +25,7 @@ struct SegmentLight {
 vec3 surfaceLight(SegmentLight lit, int light, vec3 toLight, vec3 depth, vec3 toEye) {
   const bool facing = dot(lit.normal, toLight) > 0.0;
   const float begin = facing ? lit.outside[light] : lit.begin[light], change = facing ? 0.0 : lit.change[light];
-  const vec3 tint = kTinted ? frame.tint : vec3(1.0);
+  const vec3 tint = kTinted ? kept.tint : vec3(1.0);
   vec3 through;
   [[unroll]] for (int c = 0; c < 3; ++c) through[c] = exp(-tint[c] * begin) * meanTransmittance(depth[c] + tint[c] * change);
   return lit.surface * (facing ? 0.5 : 1.0) * surfaceScattering(lit.normal, toLight, toEye) * through;
@@ -35,20 +35,20 @@ vec3 surfaceLight(SegmentLight lit, int light, vec3 toLight, vec3 depth, vec3 to
 // within the segment. `depth` is the segment's optical depth for light.
 vec3 lightOf(int light, SegmentLight lit, vec3 depth, vec3 toEye) {
   // Values are selected, as lavapipe would compile the shader anew for uniforms on which a branch depends.
-  const SampleLight source = frame.lights[light];
+  const SampleLight source = kept.lights[light];
   const bool atInfinity = source.atInfinity != 0;
-  const vec3 apart = frame.indexToWorld * (source.positionOrDirection - lit.position);
+  const vec3 apart = kept.indexToWorld * (source.positionOrDirection - lit.position);
   const float apart2 = dot(apart, apart);
   const vec3 toLight = mix(apart * inversesqrt(max(apart2, 1e-30)), source.positionOrDirection, bvec3(atInfinity));
-  const float distance2 = mix(max(apart2, frame.nearestLight2), 1.0, atInfinity);
+  const float distance2 = mix(max(apart2, kept.nearestLight2), 1.0, atInfinity);
   const float begin = lit.begin[light], change = lit.change[light];
   // A stored depth at the end of its range stands for any larger one; times a tint below 1 it would let light through.
   if (kTinted && begin + max(change, 0.0) >= kMaxLightDepth) return vec3(0.0);
-  float phase = mix(phaseFunction(frame.phaseG, -toLight, toEye), 1.0 / (4.0 * kPi), frame.phaseG == 0.0);
+  float phase = mix(phaseFunction(kept.phaseG, -toLight, toEye), 1.0 / (4.0 * kPi), kept.phaseG == 0.0);
   if (kSurfaces) phase *= 1.0 - lit.surface;
   vec3 sum;
   if (kTinted)
-    [[unroll]] for (int c = 0; c < 3; ++c) sum[c] = phase * exp(-frame.tint[c] * begin) * meanTransmittance(depth[c] + frame.tint[c] * change);
+    [[unroll]] for (int c = 0; c < 3; ++c) sum[c] = phase * exp(-kept.tint[c] * begin) * meanTransmittance(depth[c] + kept.tint[c] * change);
   else
     sum = vec3(phase * exp(-begin) * meanTransmittance(depth.r + change));
   if (kSurfaces && lit.surface > 0.0) sum += surfaceLight(lit, light, toLight, depth, toEye);
@@ -66,7 +66,7 @@ void addSegment(out SlabPart part, inout Sums sums, vec4 medium, float segmentLe
   const float own = depth < 0.01 ? 1.0 - 0.5 * depth : (1.0 - through) / depth;
   vec3 leaving = vec3(own), depths = vec3(depth), before = vec3(sums.transmittance);
   if (kTinted) {  // what is scattered forwards within the segment goes on
-    depths = kSampled ? depth - segmentLength * frame.forward * frame.sourceUnit * medium.rgb : depth * frame.deltaScale;
+    depths = kSampled ? depth - segmentLength * kept.forward * kept.sourceUnit * medium.rgb : depth * kept.deltaScale;
     [[unroll]] for (int c = 0; c < 3; ++c) leaving[c] = meanTransmittance(depths[c]);
     before = sums.colorTransmittance;
     sums.colorTransmittance *= exp(-depths);
@@ -77,14 +77,14 @@ void addSegment(out SlabPart part, inout Sums sums, vec4 medium, float segmentLe
     within = vec3(0.0);
   }
   if (kSampled) {
-    leaving = kScattered ? leaving * scatteredLightAt(frame.scattered, kFlux, kSurfaces ? lit.position + lit.scatteredOffset : lit.position, toEye) : vec3(0.0);
+    leaving = kScattered ? leaving * scatteredLightAt(kept.scattered, kFlux, kSurfaces ? lit.position + lit.scatteredOffset : lit.position, toEye) : vec3(0.0);
     [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
       if (i < kLights) leaving += lightOf(i, lit, within, toEye);
   }
   vec3 source = leaving * medium.rgb;
   if (kEmits) source += lit.emission;
   if (kMerged)
-    part = SlabPart(vec4(segmentLength * frame.sourceUnit * source, depth), depths);
+    part = SlabPart(vec4(segmentLength * kept.sourceUnit * source, depth), depths);
   else
     sums.color += before * segmentLength * source;
   sums.distance += (sums.transmittance - rest) * max(ahead, 0.0);
@@ -123,9 +123,9 @@ vec4 depthsTowardsLights(int quad, vec4 weights) {
 // The way from a position in index space to a light: a vector whose longest component is a voxel, and how many times its length the light is
 // away.
 vec4 layerTowards(int light, vec3 position) {
-  const vec3 toLight = frame.lights[light].positionOrDirection - position;
+  const vec3 toLight = kept.lights[light].positionOrDirection - position;
   const float layers = max(max(abs(toLight.x), max(abs(toLight.y), abs(toLight.z))), 1e-6);
-  return mix(vec4(toLight / layers, layers), vec4(frame.lights[light].across, 1e9), bvec4(frame.lights[light].atInfinity != 0));
+  return mix(vec4(toLight / layers, layers), vec4(kept.lights[light].across, 1e9), bvec4(kept.lights[light].atInfinity != 0));
 }
 
 // With kClips: after how many layers the way from a position leaves the part of the volume that is drawn; 0 or less where the position is
@@ -134,11 +134,11 @@ float layersToClip(vec3 position, vec3 layer) {
   float layers = 1e9;
   [[unroll]] for (int axis = 0; axis < 3; ++axis)
     if (abs(layer[axis]) > 1e-6) {
-      const float side = layer[axis] > 0.0 ? frame.clipHigh[axis] : frame.clipLow[axis];
+      const float side = layer[axis] > 0.0 ? kept.clipHigh[axis] : kept.clipLow[axis];
       layers = min(layers, (side - position[axis]) / layer[axis]);
     }
-  const float change = dot(frame.clipNormal, layer);
-  if (change > 1e-6) layers = min(layers, (frame.clipDistance - dot(frame.clipNormal, position)) / change);
+  const float change = dot(kept.clipNormal, layer);
+  if (change > 1e-6) layers = min(layers, (kept.clipDistance - dot(kept.clipNormal, position)) / change);
   return layers;
 }
 
@@ -199,7 +199,7 @@ void continueDepths(inout vec4 depths, LevelGeometry level, vec2 position) {
   const vec2 first = clamp(position + 1.0, 1e-6, 1.0), last = clamp(vec2(level.dimensions) - position, 1e-6, 1.0);
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
-    const SampleLight light = frame.lights[i];
+    const SampleLight light = kept.lights[i];
     const vec2 shares = max(first, vec2(light.lightsFirst[kSideA], light.lightsFirst[kSideB])) *
                         max(last, vec2(light.lightsLast[kSideA], light.lightsLast[kSideB]));
     const float share = shares.x * shares.y;
@@ -210,7 +210,7 @@ void continueDepths(inout vec4 depths, LevelGeometry level, vec2 position) {
 // The depths towards the lights on a slice beyond the volume, from those at the other end of the stretch to it.
 vec4 depthsBeyond(int slice, vec4 depths) {
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i)
-    if (i < kLights) depths[i] *= 1.0 - (slice < 0 ? frame.lights[i].lightsFirst[kAxis] : frame.lights[i].lightsLast[kAxis]);
+    if (i < kLights) depths[i] *= 1.0 - (slice < 0 ? kept.lights[i].lightsFirst[kAxis] : kept.lights[i].lightsLast[kAxis]);
   return depths;
 }
 

@@ -2,6 +2,7 @@
 // and the look-up of the four blocks around a position on a slice.
 #ifndef GATHER_MARCH_GLSL
 #define GATHER_MARCH_GLSL
+#include "gather_kept.glsl"
 #include "gather_ray.glsl"
 
 // Compiled for each combination of these, because drivers take long to specialise code of this size:

@@ -63,7 +63,7 @@ vec4 colorOf(Projected all, out float distance) {
   tableAt(largest ? all.largest - 1.0 : all.sum / all.coverage, integral, medium);
   const float opacity = 1.0 - exp(-frame.projectionLayer * medium.a);
   distance = opacity * (largest ? all.distance : all.distance / all.coverage);
-  return vec4(opacity * frame.sourceUnit * medium.rgb / max(medium.a, 1e-30), opacity);
+  return vec4(opacity * kept.sourceUnit * medium.rgb / max(medium.a, 1e-30), opacity);
 }
 
 #endif

@@ -65,7 +65,7 @@ void addLayerTowards(inout vec4 depths, LevelGeometry level, SliceValues at, vec
   [[unroll]] for (int i = 0; i < kMaxSampleLights; ++i) {
     if (i >= kLights) continue;
     const vec3 toLight = layerTowards(i, position).xyz;
-    const float layer = length(frame.indexToWorld * toLight) * frame.extinctionUnit;
+    const float layer = length(kept.indexToWorld * toLight) * kept.extinctionUnit;
     if (!shows) {
       depths[i] += layer * at.coverage * at.medium.a;
       continue;
@@ -181,7 +181,7 @@ vec4 meanOfScalars(LevelGeometry level, Ray ray, int before, int slice, bool wit
   tableAt(quarter.x, integral, medium);
   const vec4 means = meanBetween(from.scalar, from.integral, from.medium, quarter.x, integral, medium) +
                      meanBetween(quarter.x, integral, medium, to.scalar, to.integral, to.medium);
-  return quarter.y > 0.0 ? mix(mean, 0.5 * means, frame.quarters) : mean;
+  return quarter.y > 0.0 ? mix(mean, 0.5 * means, kept.quarters) : mean;
 }
 
 // The stretch from the previous slice to this one. Scalars change linearly from a slice to the middle of the stretch and on to the next

@@ -49,7 +49,7 @@ void findGradients(inout SliceValues last, inout SliceValues found, LevelGeometr
 }
 
 vec3 normalOf(vec3 gradient) {
-  const vec3 normal = frame.gradientToWorld * gradient;
+  const vec3 normal = kept.gradientToWorld * gradient;
   return normal * inversesqrt(max(dot(normal, normal), 1e-30));
 }
 
@@ -57,7 +57,7 @@ vec3 normalOf(vec3 gradient) {
 // relative to the larger of the two.
 void setSurface(inout SegmentLight lit, vec3 gradient, float decrease) {
   lit.normal = normalOf(sign(decrease) * gradient);
-  lit.surface = frame.surface * min(2.0 * abs(decrease), 1.0);
+  lit.surface = kept.surface * min(2.0 * abs(decrease), 1.0);
 }
 
 // A point kOutside blocks outside of a surface, and the optical depths there. At the surface itself its own voxels would cast steps of shadow;
