@@ -15,7 +15,8 @@ layout(constant_id = 2) const bool kVoxels = false;  // whether blocks are voxel
 layout(constant_id = 3) const bool kRows = false;    // whether rays are parallel and their planes contain the x axis, so that voxels of a row share rays
 
 layout(local_size_x = kBrickQuadsThreads) in;
-layout(scalar, push_constant) uniform Push { LightDepthsPush push; };
+layout(scalar, push_constant) uniform Push { LightDepthsPush given; };
+LightDepthsPush push;  // copied once, as lavapipe loads uniforms lane by lane
 #define RAY_DEPTHS_BINDING 3
 #include "ray_lookup.glsl"
 layout(binding = 0) uniform utextureBuffer brickCells;  // position of each brick's first block, in blocks: x, y, z
@@ -104,6 +105,7 @@ void storeRow(ivec3 first, uint pair) {
 }
 
 void main() {
+  push = given;
   const uint brick = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   if (brick >= push.count) return;
   const int row = int(gl_LocalInvocationIndex);

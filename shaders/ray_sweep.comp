@@ -23,7 +23,8 @@ layout(constant_id = 2) const bool kSkips = false;
 layout(constant_id = 3) const bool kListed = false;
 
 layout(local_size_x = kRaySweepThreads) in;
-layout(scalar, push_constant) uniform Push { RaySweepPush push; };
+layout(scalar, push_constant) uniform Push { RaySweepPush given; };
+RaySweepPush push;  // copied once, as lavapipe loads uniforms lane by lane
 layout(binding = 0) uniform samplerBuffer extinction;  // extinction of the slab's voxels, with 0 around the volume; or scalars
 layout(scalar, binding = 1) buffer Carried { float carried[]; };  // depth between slabs, by ray
 layout(binding = 3) uniform utextureBuffer nearOccupied;  // a byte by cell: 1 if it or one of its 26 neighbours is occupied, otherwise 0
@@ -184,6 +185,7 @@ float sourceCut(vec2 atFirst, vec2 perPlane) {
 }
 
 void main() {
+  push = given;
   const uint group = gl_WorkGroupID.x + gl_WorkGroupID.y * gl_NumWorkGroups.x;
   if (kListed && group >= groupCount) return;
   const uint ray = gl_LocalInvocationID.x + kRaySweepThreads * (kListed ? groups[group] : group);
