@@ -9,10 +9,11 @@ layout(constant_id = 1) const bool kHasBackground = false;
 
 layout(binding = 0, rgba32f) readonly uniform image2D image;  // linear, premultiplied
 layout(scalar, binding = 1) readonly buffer Srgb { uint buckets[]; };
-// Of display.vert.
-layout(location = 0) flat in vec2 gainHeight;
-layout(location = 1) flat in vec3 top;
-layout(location = 2) flat in vec3 bottom;
+// Of display.vert: DisplayPush.
+layout(location = 0) flat in float gain;
+layout(location = 1) flat in float height;
+layout(location = 2) flat in vec3 top;
+layout(location = 3) flat in vec3 bottom;
 layout(location = 0) out vec4 shown;  // sRGB, straight alpha
 
 float filmicCurve(float x) {
@@ -45,8 +46,7 @@ float srgbUnit(float linear) {
 void main() {
   const ivec2 pixel = ivec2(gl_FragCoord.xy);
   const vec4 light = imageLoad(image, pixel);
-  precise const float down = (float(pixel.y) + 0.5) / gainHeight.y;
-  const float gain = gainHeight.x;
+  precise const float down = (float(pixel.y) + 0.5) / height;
   vec3 mapped;
   for (int c = 0; c < 3; ++c) mapped[c] = toneMapped(gain * light[c]);
   float most = light.a;

@@ -11,12 +11,10 @@
 layout(constant_id = 0) const int kTaps = kResampleTaps;
 layout(constant_id = 1) const int kRaysOfPixel = 0;  // GatherFrame::raysOfPixel
 
-// Of gather_tiles.vert.
-layout(location = 0) flat in float pitch;
-layout(location = 1) flat in ivec2 stored;
-layout(location = 2) flat in ivec2 row;
+#define FLAT in
+#include "resample_flats.glsl"
 #ifdef ALONG_Y
-layout(binding = 1, rgba32f) readonly uniform image2D colorEnergy;  // of rows from row.x on
+layout(binding = 1, rgba32f) readonly uniform image2D colorEnergy;  // of rows from firstRow on
 layout(binding = 2, r32f) readonly uniform image2D distances;
 const int kAlong = 1;
 #else
@@ -54,18 +52,18 @@ int weightsOf(int pixel, out float weights[kTaps]) {
 // Of a sample of the lattice, or of a pixel in a row of it.
 vec4 colorEnergyAt(ivec2 at) {
 #ifdef ALONG_Y
-  return imageLoad(colorEnergy, at - ivec2(0, row.x));
+  return imageLoad(colorEnergy, at - ivec2(0, firstRow));
 #else
-  return imageLoad(colorEnergy, at.x + at.y * row.y);
+  return imageLoad(colorEnergy, at.x + at.y * rowSamples);
 #endif
 }
 
 #ifdef WITH_DISTANCE
 float distanceAt(ivec2 at) {
 #ifdef ALONG_Y
-  return imageLoad(distances, at - ivec2(0, row.x)).x;
+  return imageLoad(distances, at - ivec2(0, firstRow)).x;
 #else
-  return imageLoad(distances, at.x + at.y * row.y).x;
+  return imageLoad(distances, at.x + at.y * rowSamples).x;
 #endif
 }
 #endif
@@ -83,14 +81,14 @@ void resolvePixel(vec4 color, float distance) {
 void main() {
   ivec2 at = ivec2(gl_FragCoord.xy);
 #ifndef ALONG_Y
-  at.y += row.x;
+  at.y += firstRow;
 #endif
   float weights[kTaps];
   const int first = weightsOf(at[kAlong], weights);
   vec4 color = vec4(0.0);
   MeanDistance mean = kNoDistance;
   [[unroll]] for (int i = 0; i < kTaps; ++i) {
-    at[kAlong] = clamp(first + i, stored.x, stored.y);
+    at[kAlong] = clamp(first + i, firstSeen, lastSeen);
     const vec4 texel = colorEnergyAt(at);
     color += weights[i] * texel;
 #ifdef WITH_DISTANCE

@@ -6,10 +6,8 @@
 layout(scalar, push_constant) uniform Push { ResamplePush push; };
 layout(scalar, binding = 3) readonly buffer List { uint tiles[]; };
 
-// What is the same for all pixels, as lavapipe loads uniforms for each pixel by itself.
-layout(location = 0) flat out float pitch;
-layout(location = 1) flat out ivec2 stored;  // first and last of the samples that are seen, along the axis of the step
-layout(location = 2) flat out ivec2 row;     // along x: added to a row of the target, samples of a row; along y: subtracted from a row
+#define FLAT out
+#include "resample_flats.glsl"
 
 // The interpolation for a pixel at sample k reads samples k - 2 to k + 5, and the stencil has widened what they hold by 1. Where the tile on
 // one side is not listed, neither that tile nor the one behind it is marked, nor are those above and below them: what is seen of this tile is
@@ -45,11 +43,13 @@ void main() {
   const bvec2 isHigh = bvec2((0x32 >> gl_VertexIndex & 1) != 0, (0x2c >> gl_VertexIndex & 1) != 0);
   pitch = frame.pitch;
 #ifdef ALONG_Y
-  stored = frame.firstSeen.y + ivec2(0, frame.seenExtent.y - 1);
-  row = ivec2(push.firstRow, 0);
+  const int axis = 1;
 #else
-  stored = frame.firstSeen.x + ivec2(0, frame.seenExtent.x - 1);
-  row = ivec2(push.firstRow, frame.samples.x);
+  const int axis = 0;
 #endif
+  firstSeen = frame.firstSeen[axis];
+  lastSeen = firstSeen + frame.seenExtent[axis] - 1;
+  firstRow = push.firstRow;
+  rowSamples = frame.samples.x;
   gl_Position = vec4(2.0 * vec2(mix(low, high, isHigh)) / vec2(push.target) - 1.0, 0.0, 1.0);
 }

@@ -6,6 +6,7 @@
 #include <limits>
 #include <span>
 
+#include "embedded/full_screen.h"
 #include "embedded/gather_empty.h"
 #include "embedded/gather_empty_distance.h"
 #include "embedded/gather_pixels.h"
@@ -14,7 +15,6 @@
 #include "embedded/gather_rows.h"
 #include "embedded/gather_rows_distance.h"
 #include "embedded/gather_rows_tiles.h"
-#include "embedded/rectangle.h"
 #include "engine/core/error.h"
 #include "engine/vulkan/pipeline.h"
 #include "engine/vulkan/rendering.h"
@@ -86,7 +86,7 @@ void GatherImage::record(Commands& commands, const Buffer& frameBuffer, const sh
                                 Blend::Replace, constants);
   };
   const Specialisation constants{taps, std::uint32_t(frame.raysOfPixel)};
-  const Pipeline empty = pipeline(shaders::rectangle, withDistance ? shaders::gather_empty_distance : shaders::gather_empty, {});
+  const Pipeline empty = pipeline(shaders::full_screen, withDistance ? shaders::gather_empty_distance : shaders::gather_empty, {});
   const Pipeline drawRows =
       pipeline(shaders::gather_rows_tiles, withDistance ? shaders::gather_rows_distance : shaders::gather_rows, constants);
   const Pipeline drawPixels =

@@ -16,8 +16,7 @@ class GatherTiles {
  public:
   explicit GatherTiles(const Device& device) : device_(device) {}
 
-  /// Records listing the tiles of a frame's sums. `frameBuffer` has `frame`. The list is visible to later
-  /// passes.
+  /// Records listing the tiles of a frame's sums. `frameBuffer` has `frame`. The list is visible to later passes.
   void record(Commands& commands, const Buffer& frameBuffer, const shader::GatherFrame& frame, const TexelView& colorEnergy);
   /// Entries as shader::kTileShift says.
   const Buffer& list() const { return list_; }

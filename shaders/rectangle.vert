@@ -1,7 +1,0 @@
-#version 460
-// A triangle that covers the viewport.
-
-void main() {
-  const vec2 corner = vec2(gl_VertexIndex & 1, gl_VertexIndex >> 1);
-  gl_Position = vec4(4.0 * corner - 1.0, 0.0, 1.0);
-}
